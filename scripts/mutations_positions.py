@@ -28,6 +28,38 @@ OF_POSITIONS: tuple[Fault, ...] = (
         prior_centred_elsewhere=("(centre - x) / span])", "(x - centre) / span])"),
     ),
     *of(
+        "model/sensitivities.py", *tests("absolute", "moved"),
+        turns_against_nothing=("on[:, 3:, 3:] = turn", "on[:, 3:, 3:] = 0.0"),
+        turns_since_zero_unturned=("adjoint_0 = on @ adjoint_0", "adjoint_0 = adjoint_0 + 0.0"),
+        turns_in_axes_of_the_base=("moved[:, 3:] = axes @ moved[:, 3:]", "pass"),
+    ),
+    *of(
+        "model/standing.py", *tests("absolute", "moved"),
+        turns_the_other_way=("self.rest.screws.rotation @ np.swapaxes(before, -1, -2)", "before @ np.swapaxes(self.rest.screws.rotation, -1, -2)"),
+    ),
+    *of(
+        "model/assembly.py", *tests("absolute", "moved"),
+        a_marker_moved_since_zero=("points = self._marker(load_cases, values)", "points = load_cases.point"),
+    ),
+    *of(
+        "measurements/channels.py", *tests("absolute", "moved"),
+        axes_not_read_are_zero=("np.where(np.isnan(self.turn), said, self.turn)", "np.nan_to_num(self.turn)"),
+        uncertainty_of_no_displacement=('_OF_ROWS = ("position", "displacement")', '_OF_ROWS = ("position",)'),
+    ),
+    *of(
+        "measurements/absolute.py", *tests("absolute", "moved"),
+        zero_readings_without_error=("since_zero = np.sqrt(2.0) if twice else 1.0", "since_zero = 1.0"),
+    ),
+    *of(
+        "data_checks/turns.py", *tests("absolute", "moved"),
+        any_change_is_a_slip=("after >= SOUND and 1.0 - now > CLEARER * (1.0 - after)", "after >= SOUND"),
+        turns_of_any_arm=("    if now >= NONE:", "    if now >= 0.0:"),
+    ),
+    *of(
+        "explain/absolute/candidates.py", *tests("absolute", "moved"),
+        loads_misread_by_sensors_alone=("    return max(laws, key=takes_off)", "    return laws[0]"),
+    ),
+    *of(
         "measurements/registration.py", *tests("measurements", "registration"),
         mirrored_frames=("np.sign(np.linalg.det(u @ vt)) or 1.0", "1.0"),
         residual_not_divided_by_its_freedom=("spare = 3 * count - frames - (marker.size if fit_marker else 0)", "spare = 3 * count"),

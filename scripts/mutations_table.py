@@ -102,7 +102,7 @@ FAULTS: tuple[Fault, ...] = (
     *of(
         "model/sensitivities.py", *tests("model", "model"), *tests("effects", "contract"),
         sensitivity_of_geometry_without_the_unloaded_arm=("-= adjoint_0[:, :, index] @ shifted", "-= 0.0 * adjoint_0[:, :, index] @ shifted"),
-        reading_axes_the_wrong_way=("axes = np.swapaxes(load_cases.reading_axes, -1, -2)", "axes = load_cases.reading_axes"),
+        reading_axes_the_wrong_way=("axes = np.swapaxes(solution.load_cases.reading_axes, -1, -2)", "axes = solution.load_cases.reading_axes"),
         load_errors_without_compliance=("per_wrench = adjoint @ rest.compliance @", "per_wrench = adjoint @"),
         standing_without_its_weight=("torques = hung", "torques = rest.torques"),
     ),

@@ -96,12 +96,13 @@ def command(
             "--method": method is not Method.trf, "--free": free, "--robust": robust,
             "--profile": profile, "--held-out": leave_out, "--compare": others,
         })  # fmt: skip
-    else:
-        start = with_freedom(start, fix or (), free)
+    if readings.absolute is None or readings.absolute.channels.displacement is not None:
         doubts = look(plain, readings)
         refuse_unbelievable(doubts, plain, readings)
         for said in doubts.sentences:
             warn(said)
+    if readings.absolute is None:
+        start = with_freedom(start, fix or (), free)
         readings, told = without_copies(readings)
         if told:
             warn(told)

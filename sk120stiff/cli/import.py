@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer, ahead
 from sk120stiff.cli.import_preview import document_of, doubts_of, preview_of
 from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
@@ -70,7 +71,7 @@ def command(
     wrench: str | None = None,
     coverage: Annotated[float | None, typer.Option(min=0.1)] = None,
     dates: Dates | None = None,
-    point: str | None = None,
+    point: list[str] | None = None,
     joints: str | None = None,
     columns: str | None = None,
     register: Annotated[bool | None, typer.Option("--register/--no-register")] = None,
@@ -109,8 +110,8 @@ def command(
         coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
         dates: Day (dmy) or month (mdy) first in dates like 10/09/2026, where the file leaves it
             open.
-        point (VALUES): Where the marker sits in the tool frame: '0,0,150 mm'. [default: found by
-            the fit]
+        point (VALUES): Where the marker sits in the tool frame: '0,0,150 mm'; of several each by
+            its name, 'A=0,0,150 mm'. [default: found by the fit]
         joints (NAMES): Columns of the actuated joints, in the joints' order: 'a,b,c'; or sums of
             them, as controllers have it: 'q1,q2,-(q2+q3)'. Names may hold blanks: 'J 1,J 2,J 2+J
             3'. [default: named as the joints, or q1,q2,...]
@@ -134,6 +135,7 @@ def command(
     if not preview:
         declare_readings(out)
     arm = open_robot(robot, base, tool)
+    one, several = _places(point or [])
     found = import_readings(
         sources,
         arm,
@@ -142,9 +144,8 @@ def command(
             angle=angle,
             load=load,
             wrench=None if wrench is None else wrench_of(wrench),
-            point=None
-            if point is None
-            else parse_values(point, "length", where="--point", like="0,0,150 mm"),
+            point=one,
+            points=several,
             joints=_names(joints),
             coverage=coverage,
             forces=None if forces is None else forces.value,
@@ -175,3 +176,25 @@ def command(
 
 def _names(text: str | None) -> tuple[str, ...] | None:
     return None if text is None else tuple(name.strip() for name in text.split(","))
+
+
+def _places(texts: list[str]) -> tuple[Array | None, dict[str, Array]]:
+    """The place of the only marker, or those of several by their names [m].
+
+    Raises:
+        InputError: Some of several places have no name, or one name has two.
+    """
+    named = {}
+    for text in texts:
+        name, _, place = text.rpartition("=")
+        if (not name.strip() and len(texts) > 1) or name.strip() in named:
+            raise InputError(
+                f"{len(texts)} places, and it is not told whose each is",
+                where="--point",
+                remedy="Name the marker before each place: --point 'A=0,0,150 mm' --point "
+                "'B=50,0,150 mm'.",
+            )
+        place_like = "0,0,150 mm"
+        named[name.strip()] = parse_values(place, "length", where="--point", like=place_like)
+    one = named.pop("", None)
+    return one, named

@@ -80,6 +80,9 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
 
 def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer:
     """Where a model has the marker at every reading, and how far the readings are off."""
+    if readings.absolute is not None and readings.absolute.channels.displacement is not None:
+        for said in look(model, readings).sentences:
+            warn(said)
     moved = placed_anew(model, readings)
     model = model if moved is None else moved.model
     predicted = predict(model, readings)
@@ -103,17 +106,19 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
     if len(gap):
         left, far = rms(gap), float(np.linalg.norm(gap, axis=1).mean())
         document |= {"rms_um": left, "mean_distance_um": far}
+        of = "positions" if predicted.position is not None else "displacements"
         parts.append(
-            f"Gap over {len(gap)} positions: {left:.4g} µm rms per axis, "
-            f"{far:.4g} µm mean distance."
+            f"Gap over {len(gap)} {of}: {left:.4g} µm rms per axis, {far:.4g} µm mean distance."
         )
-    turns = np.array([columns.get(f"gap_r{axis}[urad]", []) for axis in "xyz"], dtype=float).T
+    of = "r" if "gap_rx[urad]" in columns else "dr"
+    turns = np.array([columns.get(f"gap_{of}{axis}[urad]", []) for axis in "xyz"], dtype=float).T
     turns = turns[readings.use & np.isfinite(turns).all(axis=1)] if turns.size else turns
     if turns.size:
         document["rms_urad"] = rms(turns)
         parts.append(f"Gap over {len(turns)} rotations: {rms(turns):.4g} µrad rms per axis.")
     ways = predicted.std_parameters, predicted.std_remainder
-    parts += sentences(model, *ways, what="a position")
+    what = "a position" if predicted.position is not None else "a displacement"
+    parts += sentences(model, *ways, what=what)
     if out is not None:
         parts.append(f"Written to {out}.")
     return Answer(document, parts)

@@ -1,7 +1,7 @@
 """Slips of the pen in measurements: looked for before physics is blamed."""
 
 from sk120stiff.data_checks.copies import repeated_rows, without_copies
-from sk120stiff.data_checks.look import look, refuse_unbelievable
+from sk120stiff.data_checks.look import look, refuse_slips, refuse_unbelievable
 from sk120stiff.data_checks.search import find_slip
 from sk120stiff.data_checks.single_rows import place_of, slips_of_rows
 
@@ -9,6 +9,7 @@ __all__ = [
     "find_slip",
     "look",
     "place_of",
+    "refuse_slips",
     "refuse_unbelievable",
     "repeated_rows",
     "slips_of_rows",

@@ -6,16 +6,19 @@ no passive arm can have given, and a stated uncertainty that they contradict, ar
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
 from sk120stiff.data_checks.efforts import efforts_doubt
+from sk120stiff.data_checks.one_marker import of_one_marker
 from sk120stiff.data_checks.passive import Passive
 from sk120stiff.data_checks.scale import Scale, scale_doubt
 from sk120stiff.data_checks.search import SPARE, Slip, as_it_stands, find_slip
 from sk120stiff.data_checks.sheet import sheet_of
-from sk120stiff.errors import Refusal
+from sk120stiff.data_checks.turns import TurnSlip, turn_slip
+from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot
@@ -34,17 +37,20 @@ class DataChecks:
         scale: Everything yields far too much or too little, or None.
         limits: Readings beyond the joint limits, in a sentence, or None.
         efforts: Loads beyond what the motors hold, in a sentence, or None.
+        turns: Turns that are not those of the displacements, or None.
     """
 
     slip: Slip | None = None
     scale: Scale | None = None
     limits: str | None = None
     efforts: str | None = None
+    turns: TurnSlip | None = None
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """All of it as warnings."""
         found = [None if self.slip is None else f"{self.slip.said}. {self.slip.remedy}"]
+        found += [None if self.turns is None else f"{self.turns.said}. {self.turns.remedy}"]
         found += [None if self.scale is None else f"{self.scale.sentence}."]
         found += [self.limits, self.efforts]
         return tuple(said for said in found if said is not None)
@@ -58,6 +64,8 @@ class DataChecks:
         remedy = "No cause is sought before this is settled."
         if self.slip is not None:
             raise Refusal(self.slip.said, where=where, remedy=f"{self.slip.remedy} {remedy}")
+        if self.turns is not None and self.turns.certain:
+            raise Refusal(self.turns.said, where=where, remedy=f"{self.turns.remedy} {remedy}")
         if self.scale is not None and self.scale.certain:
             raise Refusal(self.scale.sentence, where=where, remedy=remedy)
 
@@ -69,11 +77,26 @@ def look(model: Model, measurements: Measurements) -> DataChecks:
         model: Its robot decides; its springs are only asked for the scale of everything.
         measurements: Readings; masked ones are left out, and a plan has nothing wrong.
     """
+    whole, measurements = measurements, of_one_marker(measurements)
     slip = find_slip(model.robot, measurements)
     scale = None if slip is not None else scale_doubt(model, measurements)
     robot = model.robot
     efforts = None if slip is not None else efforts_doubt(robot, measurements)
-    return DataChecks(slip, scale, limits_doubt(robot, measurements), efforts)
+    turns = None if slip is not None else turn_slip(robot, whole)
+    return DataChecks(slip, scale, limits_doubt(robot, measurements), efforts, turns)
+
+
+def refuse_slips(model: Model, measurements: Measurements) -> None:
+    """Stop before a cause is sought for what is no cause, and tell what is in doubt.
+
+    Raises:
+        Refusal: As `refuse_unbelievable`, or as `DataChecks.refuse_to_explain`.
+    """
+    doubts = look(model, measurements)
+    refuse_unbelievable(doubts, model, measurements)
+    doubts.refuse_to_explain(str(measurements.path or "the measurements"))
+    for said in doubts.sentences:
+        warnings.warn(said, ToolkitWarning, stacklevel=5)
 
 
 def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurements) -> None:
@@ -83,7 +106,7 @@ def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurem
         Refusal: No passive arm explains half of the readings and their noise does not excuse it, or
             the stated uncertainty is larger than the readings and than anything they show.
     """
-    sheet = sheet_of(model.robot, measurements)
+    sheet = sheet_of(model.robot, of_one_marker(measurements))
     if sheet is None or not sheet.exists() or not sheet.moves:
         return
     where = str(measurements.path or "the measurements")

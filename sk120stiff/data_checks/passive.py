@@ -80,15 +80,39 @@ def unit_displacements(at: Screws, force_point: Array, wrench: Array) -> Array:
         wrench: (N, 6) load in base axes [N, N·m].
     """
     attack = at if np.array_equal(at.point, force_point) else at.at(force_point)
-    force, moment = wrench[:, None, :3], wrench[:, None, 3:]
-    parts = [at.linear_jacobian * attack.torques(wrench)[:, None, :]]
     axes, origins = _bearings(at)
     moves = np.cross(axes, at.position[:, None] - origins)
+    torques = _torques_on(axes, origins, attack, wrench)
+    return np.concatenate(
+        [
+            at.linear_jacobian * attack.torques(wrench)[:, None, :],
+            np.swapaxes(moves * torques[..., None], 1, 2),
+            np.eye(3) * wrench[:, None, :3],
+        ],
+        axis=2,
+    )
+
+
+def unit_turns(at: Screws, force_point: Array, wrench: Array) -> Array:
+    """(N, 3, k) rotation of the tool for each of the same unit compliances, base axes."""
+    attack = at if np.array_equal(at.point, force_point) else at.at(force_point)
+    axes, origins = _bearings(at)
+    torques = _torques_on(axes, origins, attack, wrench)
+    return np.concatenate(
+        [
+            at.jacobian[:, 3:] * attack.torques(wrench)[:, None, :],
+            np.swapaxes(axes * torques[..., None], 1, 2),
+            np.zeros((len(wrench), 3, 3)),
+        ],
+        axis=2,
+    )
+
+
+def _torques_on(axes: Array, origins: Array, attack: Screws, wrench: Array) -> Array:
+    """(N, m) torques of loads (N, 6) about axes (N, m, 3) through points."""
     lever = np.cross(axes, attack.position[:, None] - origins)
-    torques = (lever * force).sum(-1) + (axes * moment).sum(-1)
-    parts.append(np.swapaxes(moves * torques[..., None], 1, 2))
-    parts.append(np.eye(3) * force)
-    return np.concatenate(parts, axis=2)
+    force, moment = wrench[:, None, :3], wrench[:, None, 3:]
+    return np.asarray((lever * force).sum(-1) + (axes * moment).sum(-1))
 
 
 def _bearings(at: Screws) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.data_checks.passive import unit_displacements
+from sk120stiff.data_checks.passive import unit_displacements, unit_turns
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import Frame
 from sk120stiff.robot import Robot, Screws
@@ -98,14 +98,27 @@ class Sheet:
 
     def columns(self) -> Array:
         """(M, 3, k) see `unit_displacements`."""
-        at, wrench = self.at(), self.wrench[self.kept]
-        if self.force_frame == "tool":
-            turned = at.rotation @ wrench.reshape(-1, 2, 3).swapaxes(1, 2)
-            wrench = turned.swapaxes(1, 2).reshape(-1, 6)
-        columns = unit_displacements(at, self.force_point, wrench)
-        if self.displacement_frame == "tool":
-            columns = at.rotation.swapaxes(1, 2) @ columns
-        return np.asarray(columns)
+        at = self.at()
+        return self._stated(at, unit_displacements(at, self.force_point, self._in_base(at)))
+
+    def turning_columns(self) -> Array:
+        """(M, 3, k) see `unit_turns`."""
+        at = self.at()
+        return self._stated(at, unit_turns(at, self.force_point, self._in_base(at)))
+
+    def _in_base(self, at: Screws) -> Array:
+        """(M, 6) loads in base axes."""
+        wrench = self.wrench[self.kept]
+        if self.force_frame == "base":
+            return wrench
+        turned = at.rotation @ wrench.reshape(-1, 2, 3).swapaxes(1, 2)
+        return np.asarray(turned.swapaxes(1, 2).reshape(-1, 6))
+
+    def _stated(self, at: Screws, columns: Array) -> Array:
+        """What base axes have, in the axes of the displacements."""
+        if self.displacement_frame == "base":
+            return columns
+        return np.asarray(at.rotation.swapaxes(1, 2) @ columns)
 
     def at(self) -> Screws:
         """The M poses of the rows in use; each is worked out once, whatever its loads."""

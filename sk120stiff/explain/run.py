@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
+from sk120stiff.data_checks import refuse_slips, without_copies
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
@@ -95,6 +95,8 @@ def explain(
         'none'
     """
     if measurements.absolute is not None:
+        if measurements.absolute.channels.displacement is not None:
+            refuse_slips(model, measurements)
         return explain_positions(
             model, measurements, holdout=holdout, options=options, catalogue=catalogue,
             progress=progress,
@@ -348,11 +350,7 @@ def _selections(
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:
     """The readings with copied rows masked, once nothing in them looks like a slip of the pen."""
-    doubts = look(model, measurements)
-    refuse_unbelievable(doubts, model, measurements)
-    doubts.refuse_to_explain(str(measurements.path or "the measurements"))
-    for said in doubts.sentences:
-        warnings.warn(said, ToolkitWarning, stacklevel=4)
+    refuse_slips(model, measurements)
     single, told = without_copies(measurements)
     if told:
         warnings.warn(told, ToolkitWarning, stacklevel=4)

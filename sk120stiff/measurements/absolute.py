@@ -17,10 +17,12 @@ from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.columns import (
     ANCHORS,
     DIRECTIONS,
+    DISPLACEMENTS,
     LEVELS,
     POSITIONS,
     QUATERNION,
     ROTATION_VECTOR,
+    TURNS,
     UNCERTAINTIES,
     Roles,
 )
@@ -227,6 +229,13 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
     rotation = _rotation(table, roles)
     if rotation is not None:
         found["rotation"] = rotation
+    if roles.has & set(DISPLACEMENTS):
+        found["displacement"] = quantities(table, DISPLACEMENTS, "length", allow_blank=True)
+    if roles.has & set(TURNS):
+        found["turn"] = np.full((len(table.lines), 3), np.nan)
+        for k, name in enumerate(TURNS):
+            if name in roles.has:  # a level reads two of them
+                found["turn"][:, k] = table.quantity(name, "angle", allow_blank=True)
     if "l" in roles.has:
         found["distance"] = table.quantity("l", "length", allow_blank=True)
         found["anchor"] = quantities(table, ANCHORS, "length")
@@ -245,11 +254,12 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
                 "direction vx, vy, vz of the tool, between -85 and 85 deg above the horizon.",
             )
     sigma, noise = {}, file.settings.noise
+    twice = file.settings.displacement.zero == "separate"  # two readings of the gauge
+    since_zero = np.sqrt(2.0) if twice else 1.0
     if noise.sigma is not None:
         size = float(units.to_si(noise.sigma, noise.unit, "length", where=file.place("noise.unit")))
-        sigma = dict.fromkeys(("position", "distance", "shift"), size)
-        if file.settings.displacement.zero == "separate":  # two readings of the gauge
-            sigma["shift"] *= np.sqrt(2.0)
+        sigma = dict.fromkeys(("position", "distance"), size)
+        sigma |= dict.fromkeys(("shift", "displacement"), size * since_zero)
     if noise.rotation is not None:
         turn = float(
             units.to_si(
@@ -257,7 +267,7 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
                 where=file.place("noise.rotation_unit"),
             )
         )  # fmt: skip
-        sigma |= {"rotation": turn, "inclination": turn}
+        sigma |= {"rotation": turn, "inclination": turn, "turn": turn * since_zero}
     rows = quantities(table, UNCERTAINTIES, "length") if "sx" in roles.has else None
     return Channels(**found, sigma=sigma, sigma_of_rows=rows)
 

@@ -10,18 +10,36 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.robot.rotations import rotation_vector
+from sk120stiff.robot.rotations import rotation_of, rotation_vector
 
-Kind = Literal["position", "rotation", "distance", "shift", "inclination"]
-KINDS: tuple[Kind, ...] = ("position", "rotation", "distance", "shift", "inclination")
-ANGLES = ("rotation", "inclination")  # the other kinds are lengths
-OF_AXES = ("position", "rotation")  # a number for each of three axes; the other kinds are one
+Kind = Literal[
+    "position", "rotation", "distance", "shift", "inclination", "displacement", "turn"
+]  # fmt: skip
+KINDS: tuple[Kind, ...] = get_args(Kind)
+ANGLES = ("rotation", "inclination", "turn")  # the other kinds are lengths
+OF_AXES = ("position", "rotation", "displacement", "turn")  # three numbers; the others are one
+_OF_ROWS = ("position", "displacement")  # whose uncertainty a row may state
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """What a load does to the tool, axes of the displacements.
+
+    Attributes:
+        displacement: (N, 3) displacement of the marker, as the instrument reads it [m].
+        rotation: (N, 3, 3) from the axes of the tool without load to those with it.
+        columns: (N, 6, P) derivative of both; no parameters where nobody asked.
+    """
+
+    displacement: Array
+    rotation: Array
+    columns: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +57,11 @@ class Channels:
             displacements [m].
         inclination, level: (N,) angle above the horizon [rad] of a direction (N, 3) of the tool,
             axes of the tool.
+        displacement, turn: (N, 3) displacement of the marker by the load [m] and rotation vector
+            of the tool from its axes without load to those with it [rad], axes of the
+            displacements.
         sigma: Standard uncertainty of each kind of channel as stated [m or rad].
-        sigma_of_rows: (N, 3) standard uncertainty of each position [m], or None.
+        sigma_of_rows: (N, 3) standard uncertainty of each position or displacement [m], or None.
     """
 
     position: Array | None = None
@@ -51,6 +72,8 @@ class Channels:
     along: Array | None = None
     inclination: Array | None = None
     level: Array | None = None
+    displacement: Array | None = None
+    turn: Array | None = None
     sigma: dict[str, float] = dataclasses.field(default_factory=dict)
     sigma_of_rows: Array | None = None
 
@@ -109,7 +132,7 @@ class Channels:
             name: None if getattr(self, name) is None else getattr(self, name)[index]
             for name in (
                 "position", "rotation", "distance", "anchor", "shift", "along", "inclination",
-                "level", "sigma_of_rows",
+                "level", "displacement", "turn", "sigma_of_rows",
             )
         }  # fmt: skip
         return dataclasses.replace(self, **cut)
@@ -123,13 +146,22 @@ class Channels:
             blank[kind] = values
         return dataclasses.replace(self, **blank)
 
+    @property
+    def by_load(self) -> bool:
+        """Is anything read that only a load makes?"""
+        return any(x is not None for x in (self.shift, self.displacement, self.turn))
+
+    @property
+    def displacements_alone(self) -> bool:
+        """Was nothing read but what a load makes?"""
+        return set(self.present) <= {"shift", "displacement", "turn"}
+
     def project(
         self,
         position: Array,
         rotation: Array,
         columns: Array,
-        moved: Array,
-        moving: Array,
+        moved: Moved | None = None,
         tilted: tuple[Array, Array] | None = None,
     ) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction.
@@ -137,8 +169,7 @@ class Channels:
         Args:
             position, rotation, columns: (N, 3), (N, 3, 3) predicted poses and (N, 6, P) their
                 derivative, axes of the instrument.
-            moved, moving: (N, 3) predicted displacement by the load and (N, 3, P) its derivative,
-                axes of the displacements; looked at only where there are shifts.
+            moved: What the load is predicted to do, where anything is read that it makes.
             tilted: (N,) predicted inclination and (N, P) its derivative, where there are any.
         """
         found: dict[Kind, tuple[Array, Array]] = {}
@@ -151,10 +182,8 @@ class Channels:
             far = np.linalg.norm(away, axis=1)
             slope = np.einsum("ni,nip->np", away / far[:, None], columns[:, :3])
             found["distance"] = (self.distance - far)[:, None], slope[:, None]
-        if self.shift is not None and self.along is not None:
-            gap = self.shift - np.einsum("ni,ni->n", self.along, moved)
-            slope = np.einsum("ni,nip->np", self.along, moving)
-            found["shift"] = gap[:, None], slope[:, None]
+        if moved is not None:
+            found |= self._by_load(moved)
         if self.inclination is not None and tilted is not None:
             found["inclination"] = (self.inclination - tilted[0])[:, None], tilted[1][:, None]
         held = [(*found[kind], self.held(kind)) for kind in self.present]
@@ -163,16 +192,30 @@ class Channels:
             np.concatenate([slope[known] for _, slope, known in held]),
         )
 
+    def _by_load(self, moved: Moved) -> dict[Kind, tuple[Array, Array]]:
+        found: dict[Kind, tuple[Array, Array]] = {}
+        if self.shift is not None and self.along is not None:
+            gap = self.shift - np.einsum("ni,ni->n", self.along, moved.displacement)
+            slope = np.einsum("ni,nip->np", self.along, moved.columns[:, :3])
+            found["shift"] = gap[:, None], slope[:, None]
+        if self.displacement is not None:
+            found["displacement"] = self.displacement - moved.displacement, moved.columns[:, :3]
+        if self.turn is not None:
+            said = rotation_vector(moved.rotation)  # where an axis was not read
+            read = rotation_of(np.where(np.isnan(self.turn), said, self.turn))
+            found["turn"] = _turned(read, moved.rotation, moved.columns[:, 3:])
+        return found
+
     def scale(self, kind: Kind) -> Array:
         """(M_kind,) relative standard uncertainty of the channels of a kind [m or rad]."""
         held = self.held(kind)
-        if kind == "position" and self.sigma_of_rows is not None:
+        if kind in _OF_ROWS and self.sigma_of_rows is not None:
             return self.sigma_of_rows[held]
         return np.full(int(held.sum()), self.sigma.get(kind, 1.0))
 
     def stated(self, kind: Kind) -> bool:
         """Does the file say how uncertain the readings of a kind are?"""
-        return kind in self.sigma or (kind == "position" and self.sigma_of_rows is not None)
+        return kind in self.sigma or (kind in _OF_ROWS and self.sigma_of_rows is not None)
 
 
 def inclined(level: Array, rotation: Array, turning: Array, down: Array) -> tuple[Array, Array]:

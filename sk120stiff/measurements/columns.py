@@ -29,7 +29,8 @@ _BESIDE = ("payload", "marker", "temperature", "series", "station")
 _SINGLE = ("d", "l")
 _GROUPS: dict[str, tuple[str, ...]] = {"d": DIRECTIONS, "l": ANCHORS, "inc": LEVELS}
 _ABSOLUTE = (
-    *_SINGLE, "inc", *_BESIDE, *ROTATION_VECTOR, *QUATERNION, *DIRECTIONS, *ANCHORS, *LEVELS,
+    *TURNS, *_SINGLE, "inc", *_BESIDE, *ROTATION_VECTOR, *QUATERNION, *DIRECTIONS, *ANCHORS,
+    *LEVELS,
 )  # fmt: skip
 _WORDS = (
     *FORCES, *MOMENTS, *DISPLACEMENTS, *POSITIONS, *UNCERTAINTIES, *_BARE, "time", "zero_time",
@@ -39,7 +40,7 @@ _WORDS = (
 _UNITS = {
     FORCES: "N", MOMENTS: "N*m", DISPLACEMENTS: "mm", POSITIONS: "mm", UNCERTAINTIES: "um",
     ("time", "zero_time"): "s", ROTATION_VECTOR: "rad", ANCHORS: "m", _SINGLE: "mm",
-    ("inc",): "deg",
+    ("inc",): "deg", TURNS: "mrad",
 }  # fmt: skip
 _TORQUE = re.compile(r"(t|tau|torque)_?[xyz]", re.IGNORECASE)
 _OTHER_DRESS = re.compile(r"(?P<name>[A-Za-z]+)\s*(?P<mark>[ (/_])(?P<unit>[^)]*)\)?")
@@ -54,8 +55,8 @@ class Roles:
         has: The known words that are there.
         extra: Further columns, kept as notes.
         measured: `DISPLACEMENTS`, `POSITIONS`, or nothing for a plan.
-        absolute: There are readings or conditions that no displacement has: orientations,
-            distances, single directions, payloads, several markers.
+        absolute: There are readings or conditions that displacements of one point do not have:
+            orientations, turns, distances, single directions, payloads, several markers.
     """
 
     joints: dict[str, str]
@@ -65,8 +66,12 @@ class Roles:
     absolute: bool = False
 
 
-def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
+def assign_roles(
+    table: Table, actuated: tuple[str, ...] = (), *, several_points: bool = False
+) -> Roles:
     """Tell joint columns from loads, readings and notes.
+
+    With `several_points` a column ``marker`` says which of them went how far under a load.
 
     A column that is no known word is a joint if its unit is one of angle or length, else a note.
     Names in `actuated` are joints even where they are a known word (a gantry's ``x``).
@@ -78,7 +83,7 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
     joints: dict[str, str] = {}
     has: set[str] = set()
     extra: list[str] = []
-    standing = _standing(table, actuated)
+    standing = _standing(table, actuated, several_points)
     for name, unit in table.column_units.items():
         if name in standing and name not in actuated:
             has.add(name)
@@ -140,13 +145,18 @@ def assign_roles(table: Table, actuated: tuple[str, ...] = ()) -> Roles:
     return Roles(joints, frozenset(has), tuple(extra), measured, absolute)
 
 
-def _standing(table: Table, actuated: tuple[str, ...]) -> frozenset[str]:
-    """Words of `_ABSOLUTE` that are meant as such: beside positions or single readings only."""
+def _standing(table: Table, actuated: tuple[str, ...], several_points: bool) -> frozenset[str]:
+    """Words of `_ABSOLUTE` that are meant as such: beside positions or single readings.
+
+    Beside displacements these are turns and, of several points, which marker was read.
+    """
     names = table.headers.keys() - set(actuated)
     single = any(name in names and set(group) <= names for name, group in _GROUPS.items())
-    if not single and not names & set(POSITIONS):
-        return frozenset()
-    return frozenset(_ABSOLUTE) & names
+    if single or names & set(POSITIONS):
+        return (frozenset(_ABSOLUTE) - set(TURNS)) & names
+    if names & set(DISPLACEMENTS):
+        return frozenset((*TURNS, "marker") if several_points else TURNS) & names
+    return frozenset()
 
 
 def _measured(table: Table, has: set[str]) -> tuple[str, ...]:

@@ -95,8 +95,10 @@ def assembled(
 
     named = _robot(file.settings.robot, table.path.parent)
     refuse_payload_for_force(table, file.settings, named)
-    roles = columns.assign_roles(table, tuple(actuated or ()))
-    _tell_unused_turns(table, roles.extra)
+    several = len(file.settings.points) > 1
+    roles = columns.assign_roles(table, tuple(actuated or ()), several_points=several)
+    _tell_unused_turns(table, roles)
+    _refuse_markers_without_places(table, roles)
     measurements = _assemble(table, roles, file, data_hash)
     if actuated is not None:
         kinds = None
@@ -187,15 +189,42 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
     )
 
 
-def _tell_unused_turns(table: Table, extra: Sequence[str]) -> None:
-    """Warn that turns under a load are not read beside displacements."""
-    turns = [name for name in extra if name in (*columns.TURNS, *columns.ROTATION_VECTOR)]
-    if turns:
-        warn(
-            f"{table.path}: {', '.join(turns)} are not used: how far the point went is, and not "
-            "how the tool turned. To use both, write where the point stood and how the tool was "
-            "turned under each load: x y z beside qw qx qy qz."
+def _tell_unused_turns(table: Table, roles: Roles) -> None:
+    """Warn of turns and orientations beside readings that they say nothing of."""
+    turns = [name for name in roles.extra if name in (*columns.TURNS, *columns.ROTATION_VECTOR)]
+    if not turns:
+        return
+    if roles.measured == columns.DISPLACEMENTS:
+        remedy = (
+            "If they say how the load turned the tool, as a rotation vector, call them drx, dry, "
+            "drz; if how the tool stood, write where the point stood as well: x y z."
         )
+    else:
+        remedy = "Turns by a load stand beside displacements dx dy dz."
+    warn(f"{table.path}: {', '.join(turns)} are not used. {remedy}")
+
+
+def _refuse_markers_without_places(table: Table, roles: Roles) -> None:
+    """Several markers under one load went differently far, and nobody said where they sit.
+
+    Raises:
+        InputError: Two rows of one pose and one load name different markers.
+    """
+    if roles.measured != columns.DISPLACEMENTS or "marker" not in roles.extra:
+        return
+    load = [table.cells[n] for n in ("pose", *columns.FORCES, *columns.MOMENTS) if n in roles.has]
+    seen: dict[tuple[str, ...], str] = {}
+    for row, marker in enumerate(table.cells["marker"]):
+        first = seen.setdefault(tuple(cells[row] for cells in load), marker)
+        if marker != first:
+            raise InputError(
+                f"the markers {first!r} and {marker!r} were read under the same load, and where "
+                "they sit on the tool is not stated",
+                where=table.place("marker", row),
+                remedy=f"State their places in the YAML file: points: {{{first}: {{xyz: [0, 0, "
+                f"100], unit: mm}}, {marker}: {{xyz: [50, 0, 100], unit: mm}}}}; or rename the "
+                "column if it is a note.",
+            )
 
 
 def _sigma_of_rows(rows: Rows, found: Displacements, roles: Roles) -> Array | None:

@@ -15,11 +15,13 @@ from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.columns import (
     ANCHORS,
     DIRECTIONS,
+    DISPLACEMENTS,
     FORCES,
     LEVELS,
     MOMENTS,
     POSITIONS,
     ROTATION_VECTOR,
+    TURNS,
     UNCERTAINTIES,
 )
 from sk120stiff.measurements.data import Measurements
@@ -65,6 +67,8 @@ def columns_of_positions(m: Measurements, said: Absolute, angle: str, length: st
 def _channels(read: Channels, length: str) -> Written:
     if read.position is not None:
         yield from _columns(POSITIONS, read.position, length, "length")
+    if read.displacement is not None:
+        yield from _columns(DISPLACEMENTS, read.displacement, length, "length")
     if read.sigma_of_rows is not None:
         yield from _columns(UNCERTAINTIES, read.sigma_of_rows, length, "length")
     if read.rotation is not None:
@@ -72,6 +76,8 @@ def _channels(read: Channels, length: str) -> Written:
         turns = np.full((len(known), 3), np.nan)
         turns[known] = rotation_vector(read.rotation[known])
         yield from _columns(ROTATION_VECTOR, turns, "rad", "angle")
+    if read.turn is not None:
+        yield from _columns(TURNS, read.turn, "mrad", "angle")
     if read.distance is not None and read.anchor is not None:
         yield _column("l", read.distance, length, "length")
         yield from _columns(ANCHORS, read.anchor, "m", "length")
@@ -107,7 +113,9 @@ def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[
     noise: dict[str, Any] = {}
     if size is not None:
         noise |= {"sigma": float(f"{1e6 * size:.12g}"), "unit": "um"}
-        if stated.get("shift", size) > size:  # two readings of the gauge
+        if (
+            max(stated.get(kind, size) for kind in ("shift", "displacement")) > size
+        ):  # two readings of the gauge
             settings["displacement"] = {"frame": m.displacement_frame, "zero": "separate"}
     if turn is not None:
         noise |= {"rotation": float(f"{1e6 * turn:.12g}"), "rotation_unit": "urad"}

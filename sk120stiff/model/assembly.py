@@ -186,7 +186,7 @@ class Assembly:
         z_0 = self.start(load_cases, values)
         if load_cases.zero_a is not None:  # encoders read a little otherwise without load
             z_0[:, : self.robot.n] += load_cases.zero_a - load_cases.a
-        unloaded, begin = self._sagging(z_0, load_cases, stood.rest.weight, self.soft(values), bare)
+        unloaded, begin = self._sagging(z_0, load_cases, values, stood.rest.weight, bare)
         displacement = stood.rest.screws.position - unloaded.screws.position[begin]
         readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(
@@ -238,15 +238,15 @@ class Assembly:
         self,
         z_0: Array,
         load_cases: LoadCases,
+        values: Array,
         weight: Weight | None,
-        soft: Index,
         near: Array | None,
     ) -> tuple[Equilibrium, Index | slice]:
         """The arm before the load comes, bent by its own weight only; see `Solution.begin`.
 
         Under one load after the other it begins alike: where it rests is worked out once.
         """
-        points = load_cases.point
+        points = self._marker(load_cases, values)
         apart = z_0 if points.ndim == 1 else np.hstack([z_0, points])
         fresh = np.append(True, (apart[1:] != apart[:-1]).any(axis=1))
         rows: Mask | slice = slice(None)
@@ -260,7 +260,7 @@ class Assembly:
             np.zeros((len(start), 6)),
             lambda torques: (np.zeros_like(torques), np.zeros((start.shape[1],) * 2)),
             point=points if points.ndim == 1 else points[rows],
-            soft=soft if weight is not None else np.zeros(0, dtype=np.intp),
+            soft=self.soft(values) if weight is not None else np.zeros(0, dtype=np.intp),
             weight=weight,
             near=None if near is None else near[rows],
         )

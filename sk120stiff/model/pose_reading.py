@@ -14,10 +14,11 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases, Mounting, ReadingError, Viewpoint
+from sk120stiff.measurements.channels import Moved
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.misread import misread
 from sk120stiff.model.model import Model
-from sk120stiff.model.sensitivities import pose_sensitivities
+from sk120stiff.model.sensitivities import moving_sensitivities, pose_sensitivities
 
 BLOCK = 512  # readings solved together; memory stays linear in their number
 BUDGET = 2_000_000  # numbers in one (block, n, n) array
@@ -59,6 +60,30 @@ def read_poses(
     return PoseReading(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
 
 
+def move_by_load(
+    model: Model, load_cases: LoadCases, values: Array | None = None, *, derivative: bool = False
+) -> Moved:
+    """Predicted displacements of the marker, and rotations of the tool, by N loads, in blocks.
+
+    What an instrument misreads is in the displacements alone.
+
+    Raises:
+        Refusal: The springs cannot hold the arm's weight or a load.
+    """
+    given = model.values if values is None else values
+    found: list[Moved] = []
+    for part in _blocks(load_cases, model.assembly.mechanism.n):
+        solution = model.assembly.solve(part, given)
+        axes = part.reading_axes
+        columns = np.zeros((part.count, 6, 0))
+        if derivative:
+            columns = moving_sensitivities(model.assembly, solution, given)
+        turn = np.swapaxes(axes, -1, -2) @ solution.turn @ axes
+        found.append(Moved(solution.displacement, turn, columns))
+    names = ("displacement", "rotation", "columns")
+    return Moved(*(np.concatenate([getattr(part, n) for part in found]) for n in names))
+
+
 def instrument_frames(model: Model, load_cases: LoadCases) -> tuple[Array, Array]:
     """(N, 3, 3) rotations and (N, 3) origins [m] of base axes as the instrument sees them.
 
@@ -95,7 +120,7 @@ def _read(
     said = misread(assembly.of(ReadingError), load_cases, values, turned + t)
     P = len(values) if derivative else 0
     columns = np.zeros((load_cases.count, 6, P))
-    turning = columns[:, :0]
+    turning = columns[:, 3:]
     if derivative:
         body = pose_sensitivities(assembly, stood, values)
         turning = body[:, 3:]

@@ -14,7 +14,7 @@ from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
-from sk120stiff.model.pose_reading import read_poses
+from sk120stiff.model.pose_reading import move_by_load, read_poses
 from sk120stiff.model.uncertainty import HIDDEN, Uncertainty, spread
 from sk120stiff.robot.rotations import rotation_vector
 
@@ -33,6 +33,8 @@ class Predicted:
         blame: For every reading the names of the parameters that make its uncertainty infinite.
         position, rotation: (N, 3) where the marker stands [m] and (N, 3, 3) axes that are read, the
             tool's or a target's, in the axes of the instrument; None where displacements were read.
+        turn: (N, 3) rotation vector of the tool from its axes without load to those with it, axes
+            of the displacements [rad]; None where none was read.
     """
 
     displacement: Array
@@ -41,6 +43,7 @@ class Predicted:
     blame: tuple[tuple[str, ...], ...] = ()
     position: Array | None = None
     rotation: Array | None = None
+    turn: Array | None = None
 
     def __repr__(self) -> str:
         if self.position is not None:
@@ -84,8 +87,7 @@ class Predicted:
             >>> said.gap(readings).shape
             (15, 3)
         """
-        absolute = measurements.absolute
-        read = measurements.displacement if absolute is None else absolute.channels.position
+        read = _read(measurements)
         said = self.displacement if self.position is None else self.position
         return np.full_like(said, np.nan) if read is None else np.asarray(read - said)
 
@@ -145,16 +147,25 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
             remedy="Give a model that was fitted to readings of this tracker, as 'identify' and "
             "'explain' write it.",
         )
-    return predict_positions(model, load_cases)
+    return predict_channels(model, measurements)
 
 
-def predict_positions(model: Model, load_cases: LoadCases) -> Predicted:
-    """Where the marker stands at every reading, as the instrument sees it; ± if that is known.
+def predict_channels(model: Model, measurements: Measurements) -> Predicted:
+    """Where each marker stands as the instrument sees it, or how far a load moves it; ± if known.
 
     Raises:
         Refusal: The springs cannot hold the arm's weight or a load.
     """
-    known = model.uncertainty
+    load_cases = load_cases_of(model.robot, measurements)
+    known, said = model.uncertainty, measurements.absolute
+    if said is not None and said.channels.displacement is not None:
+        went = move_by_load(model, load_cases, derivative=known is not None)
+        turn = None if said.channels.turn is None else rotation_vector(went.rotation)
+        if known is None:
+            return Predicted(went.displacement, turn=turn)
+        std, blame = _spread_of(known, model.names, went.columns[:, :3])
+        left = remainder_std(known, load_cases)
+        return Predicted(went.displacement, std, left, blame, turn=turn)
     seen = read_poses(model, load_cases, derivative=known is not None)
     moved = model.predict(load_cases)
     if known is None:
@@ -266,7 +277,7 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
         if std is not None:
             told = np.where(np.isfinite(std), std, np.nan) * 1e6
             columns |= {f"std_{name}_{axis}[um]": told[:, k] for k, axis in enumerate(AXES)}
-    read = readings.absolute.channels.position if readings.absolute else readings.displacement
+    read = _read(readings)
     if read is not None:
         for k, axis in enumerate(AXES):
             columns[f"{of}{axis}[mm]"] = read[:, k] * 1e3
@@ -283,11 +294,26 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
     return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
 
 
+def _read(readings: Measurements) -> Array | None:
+    """(N, 3) displacements as read, else positions [m]; None where neither was."""
+    if readings.absolute is None:
+        return readings.displacement
+    channels = readings.absolute.channels
+    return channels.position if channels.displacement is None else channels.displacement
+
+
 def _of_turns(readings: Measurements, predicted: Predicted) -> dict[str, Array]:
     """Rotation vectors of the axes that are read, axes of the instrument; nothing where none was.
 
-    The gap is the rotation from the predicted axes to those that were read.
+    The gap is the rotation from the predicted axes to those that were read. Of what a load turned
+    both are those of the turns.
     """
+    turn = None if readings.absolute is None else readings.absolute.channels.turn
+    if turn is not None and predicted.turn is not None:
+        said, gap = predicted.turn, turn - predicted.turn
+        return {f"predicted_dr{axis}[mrad]": said[:, k] * 1e3 for k, axis in enumerate(AXES)} | {
+            f"gap_dr{axis}[urad]": gap[:, k] * 1e6 for k, axis in enumerate(AXES)
+        }
     read = None if readings.absolute is None else readings.absolute.channels.rotation
     if read is None or predicted.rotation is None:
         return {}

@@ -59,13 +59,39 @@ def pose_sensitivities(assembly: Assembly, stood: Standing, values: Array) -> Ar
 
 def reading_sensitivities(assembly: Assembly, solution: Solution, values: Array) -> Array:
     """(N, 3, P) exact derivative of the readings by the internal parameter values."""
+    return _as_read(solution, _since_zero(assembly, solution, values))
+
+
+def moving_sensitivities(assembly: Assembly, solution: Solution, values: Array) -> Array:
+    """(N, 6, P) the same, and how the tool's axes under the load turn, axes of the readings.
+
+    Against those without load, that is: of R = R_load R_0ᵀ by ω_load - R ω_0.
+    """
+    return _as_read(solution, _since_zero(assembly, solution, values, solution.turn))
+
+
+def _since_zero(
+    assembly: Assembly, solution: Solution, values: Array, turn: Array | None = None
+) -> Array:
+    """(N, k, P) derivative of what the point moves from its zero reading on, base axes.
+
+    With `turn` (N, 3, 3), the rotation of the tool since then, of what it turns as well.
+    """
     load_cases, rest, before = solution.load_cases, solution.rest, solution.unloaded
     soft = assembly.soft(values)
-    adjoint = rest.adjoint(rest.screws.linear_jacobian, soft)  # (N, 3, n_z)
+    J, J_0 = rest.screws.linear_jacobian, before.screws.linear_jacobian
+    on = np.eye(3)
+    if turn is not None:
+        J, J_0 = rest.screws.jacobian, before.screws.jacobian
+        on = np.tile(np.eye(6), (load_cases.count, 1, 1))
+        on[:, 3:, 3:] = turn
+    adjoint = rest.adjoint(J, soft)  # (N, k, n_z)
     weighs = assembly.mechanism.chain.weighs
-    begin, J_0 = solution.begin, before.screws.linear_jacobian
     bare = before.adjoint(J_0, soft) if weighs else J_0
+    begin = solution.begin
     adjoint_0, weights = bare[begin], before.weights[begin]
+    if turn is not None:
+        adjoint_0 = on @ adjoint_0
     out = _standing(assembly, solution, values, adjoint)
     for effect, part, index in assembly.elastic:
         if isinstance(effect, LinearElastic) and weighs:
@@ -74,15 +100,21 @@ def reading_sensitivities(assembly: Assembly, solution: Solution, values: Array)
     for shifted, part, index in assembly.geometric:
         out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
     if len(assembly.weighing):
-        out[:, :, assembly.weighing] -= _by_weight(assembly, before, bare)[begin]
+        out[:, :, assembly.weighing] -= on @ _by_weight(assembly, before, bare)[begin]
     _add_loads(out, solution, adjoint)
-    axes = np.swapaxes(load_cases.reading_axes, -1, -2)
+    return out
+
+
+def _as_read(solution: Solution, moved: Array) -> Array:
+    """(N, k, P) derivative of displacements and turns (base axes) as the instrument states them."""
+    axes = np.swapaxes(solution.load_cases.reading_axes, -1, -2)
     turn = axes @ solution.readings.matrix
     if (turn != np.eye(3)).any():
-        out = turn @ out
+        moved[:, :3] = turn @ moved[:, :3]
+        moved[:, 3:] = axes @ moved[:, 3:]
     for part, columns in solution.readings.columns:
-        out[:, :, part] += axes @ columns
-    return out
+        moved[:, :3, part] += axes @ columns
+    return moved
 
 
 def _by_weight(assembly: Assembly, rest: Equilibrium, adjoint: Array) -> Array:

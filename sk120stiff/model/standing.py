@@ -51,3 +51,9 @@ class Solution(Standing):
         """(N, 3) predicted readings in the axes of the measurements [m]."""
         axes = np.swapaxes(self.load_cases.reading_axes, -1, -2)
         return np.asarray(np.einsum("nij,nj->ni", axes, self.readings.value))
+
+    @property
+    def turn(self) -> Array:
+        """(N, 3, 3) from the axes of the tool at its zero reading to those under the load, base."""
+        before = self.unloaded.screws.rotation[self.begin]
+        return np.asarray(self.rest.screws.rotation @ np.swapaxes(before, -1, -2))

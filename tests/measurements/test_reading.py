@@ -206,15 +206,32 @@ def test_absurd_sizes_raise_doubt_about_units(
     assert part in str(caught[0].message)
 
 
-@pytest.mark.parametrize("name", ["drx", "rx"])
-def test_turns_beside_displacements_are_no_joints_and_that_is_told(
-    name: str, tmp_path: Path
-) -> None:
-    csv = f"pose,a[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm],{name}[mrad]\n"
-    path = put(tmp_path, csv + "A,1,0,0,-9,0,0,-1,0.5\nA,1,0,0,-20,0,0,-2,1\n")
-    with pytest.warns(ToolkitWarning, match=f"{name} are not used.*x y z beside qw"):
+TURNED = "pose,a[deg],fx[N],fy[N],fz[N],dx[mm],dy[mm],dz[mm],{}\n"
+TWO = "A,1,0,0,-9,0,0,-1,0.5\nA,1,0,0,-20,0,0,-2,1\n"
+
+
+def test_orientations_beside_displacements_are_no_joints_and_that_is_told(tmp_path: Path) -> None:
+    path = put(tmp_path, TURNED.format("rx[mrad]") + TWO)
+    with pytest.warns(ToolkitWarning, match=r"rx are not used.*call them drx, dry, drz.*x y z"):
         m = read_measurements(path)
     assert m.joint_names == ("a",)
+
+
+def test_turns_beside_displacements_are_read(tmp_path: Path) -> None:
+    m = read_measurements(put(tmp_path, TURNED.format("drx[mrad]") + TWO))
+    assert m.joint_names == ("a",) and m.absolute is not None
+    turn = m.absolute.channels.turn
+    assert turn is not None
+    np.testing.assert_allclose(turn, [[5e-4, np.nan, np.nan], [1e-3, np.nan, np.nan]])
+    with pytest.raises(InputError, match=r"column drx.*unit"):
+        read_measurements(put(tmp_path, TURNED.format("drx") + TWO))
+
+
+def test_turns_beside_positions_are_told(tmp_path: Path) -> None:
+    csv = "pose,a[deg],fx[N],fy[N],fz[N],x[mm],y[mm],z[mm],drx[mrad]\n"
+    rows = "A,1,0,0,0,5,5,5,0\nA,1,0,0,-9,5,5,4,0.5\n"
+    with pytest.warns(ToolkitWarning, match="drx are not used.*stand beside displacements"):
+        read_measurements(put(tmp_path, csv + rows))
 
 
 def test_torques_by_another_name_are_not_passed_over(tmp_path: Path) -> None:

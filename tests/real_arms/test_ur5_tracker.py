@@ -39,7 +39,7 @@ if FOLDER.is_dir() and urdf() is not None:
         assert last.heldout_distance <= 0.087e-3
         assert {"geometry", "transmission"} <= set(found.families)
         # springs under weight fit beside geometry alone; beside the waves they are impostors
-        assert "sag" not in found.families and found.springs < 0.01
+        assert "compliance" not in found.families and found.springs < 0.01
         model = found.final.model
         assert all(p.internal >= 0.0 for p in model.parameters if p.spec.lower == 0.0)
         big = [abs(p.internal) / p.spec.plausible for p in found.final.parameters

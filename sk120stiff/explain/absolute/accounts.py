@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.explain.absolute.candidates import family
+from sk120stiff.effects import LoadError, Weighing
+from sk120stiff.explain.absolute.candidates import COMPLIANCE, family
 from sk120stiff.explain.absolute.choose import Chosen, lengths
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Contender
@@ -92,7 +93,10 @@ def _whole(linear: Linear, seen: Calibration) -> Mask:
 def families_of(
     linear: Linear, found: Chosen, seen: Calibration, inside: Index
 ) -> dict[str, float]:
-    """Family → rms that its causes take off the held-out gap together, over `inside` [m]."""
+    """Family → rms that its causes take off the held-out gap together, over `inside` [m].
+
+    A load that is misread shows by what yields alone: without that it is left out as well.
+    """
     metres = seen.problem.of_channels.undo
     groups: dict[str, list[int]] = {}
     for e in found.order:
@@ -101,7 +105,12 @@ def families_of(
     left = rms(metres(linear.gap(found.order, noise, held_out=True))[inside])
     out = {}
     for name, members in groups.items():
-        rest = tuple(e for e in found.order if e not in members)
+        gone = set(members)
+        if name == COMPLIANCE:
+            gone |= {
+                e for e in found.order if isinstance(linear.candidates[e], LoadError | Weighing)
+            }
+        rest = tuple(e for e in found.order if e not in gone)
         out[name] = rms(metres(linear.gap(rest, noise, held_out=True))[inside]) - left
     return out
 

@@ -39,7 +39,9 @@ FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)
-_ONLY_LOADED = ("reading_rotation", "zero_offset", "joint_offset", "link_length")
+_ONLY_LOADED = ("zero_offset", "joint_offset", "link_length")
+_BESIDE_FRAME = "reading_rotation"  # of displacements alone; positions have a frame for it
+COMPLIANCE = "compliance"  # the family of all that yields
 
 
 def candidates_at(
@@ -56,9 +58,11 @@ def candidates_at(
     """
     told = options_of(readings)
     loaded = bool(readings.wrench.any())
+    said = readings.absolute
+    went = said is not None and said.channels.displacements_alone
     out = []
     for kind in catalogue:
-        if kind.name in _ONLY_LOADED:
+        if kind.name in _ONLY_LOADED or (kind.name == _BESIDE_FRAME and not went):
             continue
         if issubclass(kind, LoadError) and not (loaded or kind.only_absolute):
             continue
@@ -99,7 +103,15 @@ def linear_at(
     Q = np.asarray(np.linalg.qr(seen.jacobian[:, own])[0])
     fitted = {effect.id: effect for effect in model.effects if effect.id not in present}
     effects = tuple(fitted.get(effect.id, effect) for effect in effects)  # by the law it was given
-    found = slopes(problem, model, [each for each in effects if each.id not in fitted])
+    laws: dict[Effect, tuple[Effect, ...]] = {
+        each: (each, *each.other_laws(problem.load_cases))
+        for each in effects if isinstance(each, LoadError) and each.id not in fitted
+    }  # fmt: skip
+    apart = [law for each in effects if each.id not in fitted for law in laws.get(each, (each,))]
+    found = slopes(problem, model, apart)
+    effects = tuple(
+        _likeliest(laws[each], found, seen) if each in laws else each for each in effects
+    )
     if fitted:
         slope = problem.channel_gap(model.values, derivative=True)[1]
         for effect in fitted.values():
@@ -140,6 +152,24 @@ def linear_at(
         seen=tuple(e for e, each in enumerate(shown) if each.id in fitted),
     )
     return linear, tuple(hidden)
+
+
+def _likeliest(laws: Sequence[Effect], found: Mapping[Effect, Array], seen: Calibration) -> Effect:
+    """The law that takes most off what is left beside all that was fitted; the first of equals.
+
+    A load that is misread in axes of the base shows little of an error in axes of the tool.
+    """
+    if len(laws) == 1:
+        return laws[0]
+    Q = np.asarray(np.linalg.qr(seen.jacobian)[0])
+    white = seen.problem.of_channels.apply
+
+    def takes_off(law: Effect) -> float:
+        own = beside(Q, white(found[law] * [s.usual for s in law.parameters]))
+        shown = own[:, own.any(axis=0)]
+        return float(np.sum((np.linalg.qr(shown)[0].T @ seen.residual) ** 2))
+
+    return max(laws, key=takes_off)
 
 
 def slopes(problem: PoseProblem, model: Model, effects: Sequence[Effect]) -> dict[Effect, Array]:
@@ -203,7 +233,7 @@ def family(effect: Effect) -> str:
     if effect.name in ("transmission_error", "joint_coupling", "approach_side", "lost_motion"):
         return "transmission"
     if isinstance(effect, Elastic):
-        return "sag"
+        return COMPLIANCE
     if isinstance(effect, ReadingError):
         return "instrument"
     if isinstance(effect, Imposed):

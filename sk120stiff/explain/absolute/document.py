@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from sk120stiff.effects import load_cases_of
 from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.explain.answer.document import (
@@ -27,7 +26,7 @@ from sk120stiff.identify.absolute.remainder import remainder_entry
 from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
 from sk120stiff.measurements import write_measurements
 from sk120stiff.model import write_model
-from sk120stiff.model.predicted import predict_positions, prediction_table
+from sk120stiff.model.predicted import predict_channels, prediction_table
 
 SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
 
@@ -104,7 +103,7 @@ def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) 
     document = verdict_of_positions(answer)
     fitted = replace(known_model(answer.final), provenance=dict(provenance))
     readings = replace(answer.readings, use=answer.readings.use & ~answer.final.wild)
-    predicted = predict_positions(fitted, load_cases_of(fitted.robot, readings))
+    predicted = predict_channels(fitted, readings)
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
         write_atomically(out / "gaps.csv", csv_text(prediction_table(readings, predicted).items()))

@@ -166,6 +166,7 @@ def calibrate(
     if placed is None and said.frame == "unknown" and set(said.channels.present) != {"inclination"}:
         raise _nowhere(readings)
     wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild
+    geometry = geometry and not said.channels.displacements_alone
     start = started(
         model, readings, placed, geometry=geometry, mounted=mounted, catalogue=catalogue
     )

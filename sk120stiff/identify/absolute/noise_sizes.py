@@ -15,6 +15,7 @@ from sk120stiff.measurements import Measurements
 
 START = {  # m or rad
     "position": 3e-5, "distance": 3e-5, "shift": 1e-5, "rotation": 1e-4, "inclination": 1e-4,
+    "displacement": 3e-5, "turn": 1e-4,
 }  # fmt: skip
 SAME = 0.2  # change of the logarithm of a noise that is none
 TWICE = 5  # poses that must have been read more than once, to tell what poses have of their own

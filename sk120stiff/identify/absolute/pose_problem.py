@@ -21,7 +21,7 @@ from sk120stiff.measurements import Channels
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import ANGLES, OF_AXES, inclined
 from sk120stiff.model import Parameter
-from sk120stiff.model.pose_reading import read_poses
+from sk120stiff.model.pose_reading import move_by_load, read_poses
 
 ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
 
@@ -116,7 +116,7 @@ class PoseProblem(Problem):
         joints = self.by_joints
         shift = np.zeros((len(joints), 3))
         for kind, part in zip(self.channels.present, self.channels.kinds, strict=True):
-            if kind == "position":
+            if kind in ("position", "displacement"):
                 axis = np.nonzero(self.channels.held(kind))[1]
                 lever = float(np.sqrt((joints[part] ** 2).sum(axis=1).mean()))
                 shift[part] = lever * np.eye(3)[axis]
@@ -205,20 +205,12 @@ class PoseProblem(Problem):
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
         """Gap (M,) measured minus predicted, and derivative (M, P) of the prediction."""
         seen = read_poses(self.model, self.load_cases, values, derivative=derivative)
-        shape = (self.load_cases.count, 3)
-        moved, moving = np.zeros(shape), np.zeros((*shape, seen.columns.shape[-1]))
-        if self.channels.shift is not None:
-            if derivative:
-                moved, moving = self.model.predict_with_sensitivities(self.load_cases, values)
-            else:
-                moved = self.model.predict(self.load_cases, values)
-        tilted = None
+        moved, tilted = None, None
+        if self.channels.by_load:
+            moved = move_by_load(self.model, self.load_cases, values, derivative=derivative)
         if self.channels.level is not None:
-            turning = seen.turning if derivative else moving
-            tilted = inclined(self.channels.level, seen.standing, turning, self._down)
-        return self.channels.project(
-            seen.position, seen.rotation, seen.columns, moved, moving, tilted
-        )
+            tilted = inclined(self.channels.level, seen.standing, seen.turning, self._down)
+        return self.channels.project(seen.position, seen.rotation, seen.columns, moved, tilted)
 
     @cached_property
     def _down(self) -> Array:

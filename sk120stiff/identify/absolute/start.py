@@ -7,6 +7,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Elastic
 from sk120stiff.effects.options import Options
+from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import Placing
 from sk120stiff.model import Model, Parameter
@@ -40,6 +41,9 @@ def started(
     """The model with frame, marker, payload and geometry beside what it has.
 
     `mounted`: (G, 3) rotation vectors of targets on the tool; None: their axes are the tool's.
+
+    Raises:
+        InputError: A marker's place is wanted, and only displacements were read.
     """
     said, robot, told = readings.absolute, model.robot, options_of(readings)
     if said is None:
@@ -59,6 +63,13 @@ def started(
     if said.frame == "unknown" and placed is not None:
         frame = np.concatenate([placed.shift, placed.turn], axis=1).ravel()
         model = joined(model, "tracker_frame", "tracker", frame)
+    if said.fit_point and said.channels.displacements_alone:
+        raise InputError(
+            "how far a marker goes under a load does not tell where it sits",
+            where=f"{readings.path or 'measurements'}, its YAML file, fit",
+            remedy="State its place and leave 'fit' out; or write where it stood, with and without "
+            "load: x y z.",
+        )
     if said.fit_point:
         marker = np.zeros(3) if placed is None else placed.marker
         model = joined(model, "tool_offset", robot.tool_frame, marker)

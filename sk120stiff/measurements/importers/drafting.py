@@ -112,6 +112,7 @@ def drafted(
     unit = readings[0][0].partition("[")[2].rstrip("]")
     for group, notes in (
         _sigmas(sheet, told, unit, reasons),
+        _turns(sheet, told, displaced=readings[0][0].startswith("d")),
         _conditions(sheet, told, reasons),
     ):
         for column, header, cells in group:
@@ -249,6 +250,19 @@ def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Gr
             notes = [*notes[:1], f"Uncertainties are in {unit}, as the positions are."]
         found.append((column, f"{name}[{plain(own or unit)}]", texts(used)))
     return found, notes
+
+
+def _turns(sheet: Sheet, told: Told, *, displaced: bool) -> _Group:
+    """How the load turned the tool, beside displacements."""
+    columns = [c for axis in POSITIONS if (c := sheet.get(f"turn {axis}"))]
+    found = []
+    for column in columns if displaced else []:
+        axis = column.meaning[-1]
+        unit = unit_of(sheet, column, "angle", told)
+        if all(column.cells):
+            quantity(sheet, column, "angle", unit)
+        found.append((column, f"dr{axis}[{plain(unit)}]", texts(column)))
+    return found, []
 
 
 def _conditions(sheet: Sheet, told: Told, reasons: dict[int, str]) -> _Group:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from sk120stiff.errors import InputError, listed
+from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import NO, Column, Guess, Sheet, Source
 from sk120stiff.measurements.importers.layout import POSITION, Layout, layout_of, sheet_of
 from sk120stiff.measurements.importers.words import meaning_of, unit_of_header
@@ -36,20 +36,11 @@ class Figaroh:
         """The readings of one marker, or of all of them, each in a row of its own.
 
         Raises:
-            InputError: The marker is not there or incomplete, or displacements are of several.
+            InputError: The marker is not there or incomplete.
         """
         found = [marker for name in _headers(source) if (marker := _axis_of(name))]
         numbers = sorted({number for number, _ in found})
         chosen = numbers if source.marker is None else [_chosen(source, numbers)]
-        moved = {number for number, axis in found if axis.startswith("d")}
-        if len(chosen) > 1 and moved:
-            raise InputError(
-                f"displacements under load are of one point, and this file has the markers "
-                f"{listed([str(number) for number in numbers])}",
-                where=source.grid.place(0),
-                remedy="Import each marker into a file of its own, which names its place: "
-                f"--marker {numbers[0]}.",
-            )
         turns = {turn for name in _headers(source) if (turn := _turn_of(name))}
         turned = {(number, axis) for number in chosen for axis in POSITION} <= turns
         sheets = {number: self._of(source, number, set(found), turned=turned) for number in chosen}

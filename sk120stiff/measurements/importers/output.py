@@ -56,7 +56,13 @@ def settings_for(
     elif told.point is not None:
         said = "The marker sits, and the load acts, where --point says."
     elif known:
-        said = "The markers sit where the file says (TCP)."
+        where = "--point says" if told.points else "the file says (TCP)"
+        said = f"The markers sit where {where}."
+        if mode == "displacements" and len(draft.markers[1]) > 1:
+            said += (
+                " The load is taken to act at the origin of the tool frame; elsewhere it is what "
+                "force.point in the YAML file says."
+            )
     elif fitted is not None and fitted.marker_fitted:
         xyz = fitted.marker
         shown = ", ".join(f"{round(1e3 * float(v), 1) + 0.0:.1f}" for v in xyz)

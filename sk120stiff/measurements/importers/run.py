@@ -34,7 +34,11 @@ from sk120stiff.measurements.importers.orientation import (
 from sk120stiff.measurements.importers.orientation_columns import named
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
 from sk120stiff.measurements.importers.several_files import joined
-from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
+from sk120stiff.measurements.importers.several_markers import (
+    of_marker,
+    refuse_several_points,
+    with_places,
+)
 from sk120stiff.measurements.importers.stations import with_stations
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
@@ -146,6 +150,7 @@ def import_readings(
     of_log = standstills(draft)
     if of_log is not None:
         draft = drafted(of_log, told, robot.actuated, prismatic)
+    draft = with_places(draft, told)
     differences, paired_rows, shifted = paired_loads(draft)
     mode: Mode = "positions"
     if draft.displaced:

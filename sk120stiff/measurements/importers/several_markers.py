@@ -1,4 +1,4 @@
-"""Several markers in one file: displacements under load are of one point of the tool."""
+"""Several markers in one file: which is read, where each sits, and displacements of several."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.contract import Sheet
 from sk120stiff.measurements.importers.drafting import Draft
+from sk120stiff.measurements.importers.told import Told
 
 APART = 0.01  # m; no arm comes back to a pose so far off, and two markers sit no nearer
 MOST = 0.5  # share of the readings repeated that lie apart, from which on that is no slip
@@ -51,28 +52,57 @@ def of_marker(sheet: Sheet, name: str | None) -> Sheet:
     )
 
 
-def refuse_several_points(draft: Draft) -> None:
-    """Refuse displacements that are not all of one point.
+def with_places(draft: Draft, told: Told) -> Draft:
+    """The rows with the places of their markers, where these were told by their names.
 
     Raises:
-        InputError: A column names several markers, or readings of one pose and load lie apart.
+        InputError: A marker without a place, or a place of no marker.
+    """
+    if not told.points:
+        return draft
+    names = _names(draft.marker_of)
+    lost = [name for name in names if name not in told.points]
+    strange = [name for name in told.points if name not in names]
+    if lost or strange:
+        what = f"no place is told of {listed(lost)}" if lost else f"no marker is {listed(strange)}"
+        raise InputError(
+            what,
+            where="--point",
+            remedy=f"The markers of this file are {listed(names)}: " + _like(names)
+            if names
+            else "No column of this file names markers: give one place, --point '0,0,150 mm'.",
+        )
+    other = tuple((header, cells) for header, cells in draft.other if header != "marker")
+    return replace(draft, markers=(draft.marker_of, dict(told.points)), other=other)
+
+
+def _like(names: list[str]) -> str:
+    return " ".join(f"--point '{name}=0,0,150 mm'" for name in names)
+
+
+def refuse_several_points(draft: Draft) -> None:
+    """Refuse differences by loads that are not all of one point, or of several without a place.
+
+    Raises:
+        InputError: A column names several markers whose places nobody told, or readings of one pose
+            and load lie apart.
     """
     sheet = draft.sheet
     column = sheet.get("marker")
     names = list(dict.fromkeys(draft.marker_of))
-    remedy = (
-        "Import each marker into a file of its own, which names its place: "
-        f"--marker {names[0] or 'NAME'}."
-    )
+    if draft.displaced and draft.markers[1]:
+        return
+    remedy = f"Or import one of them alone: --marker {names[0] or 'NAME'}."
     if column is not None and len(names) > 1:
         raise InputError(
-            f"displacements under load are of one point, and this file has the markers "
-            f"{listed(names)}",
+            f"this file has displacements of the markers {listed(names)}, and where each sits on "
+            "the tool is not told: how far they go does not tell it",
             where=sheet.place(column),
-            remedy=remedy,
+            remedy=f"Tell it: {_like(names)}. {remedy}",
         )
     if draft.displaced:
         return
+    remedy = "Import each marker into a file of its own, which names its place: --marker NAME."
     first: dict[tuple[str, bytes], int] = {}
     pairs: list[tuple[float, int, int]] = []  # how far apart, and the two rows
     for row in map(int, np.flatnonzero(draft.use)):

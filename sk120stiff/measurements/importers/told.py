@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -39,6 +40,7 @@ class Told:
         load: Of ``fx fy fz`` or of ``payload`` (there also kg).
         wrench: (6,) what the column ``load`` counts, N and N·m, base axes.
         point: (3,) where the marker sits in the tool frame, m.
+        points: The same of several markers, by their names.
         joints: A column, or a linear expression of columns, for each actuated joint.
         coverage: What stated uncertainties are multiples of; as their header says by default.
         forces: Axes of ``fx fy fz`` (``mx my mz``): ``"base"`` or ``"tool"``; base unless told.
@@ -50,6 +52,7 @@ class Told:
     load: str | None = None
     wrench: Array | None = None
     point: Array | None = None
+    points: Mapping[str, Array] = field(default_factory=dict)
     joints: tuple[str, ...] | None = None
     coverage: float | None = None
     dates: DateOrder | None = None

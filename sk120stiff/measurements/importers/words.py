@@ -29,6 +29,8 @@ _AXES = {
     "loaded ": rf"(?:{_PUSHED}) {_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_PUSHED})",
     "d": rf"d ?{_AXIS}|(?:{_MOVED}) {_AXIS.replace('a>', 'b>')}"
     rf"|{_AXIS.replace('a>', 'c>')} (?:{_MOVED})",
+    "turn ": rf"(?:d|delta) ?(?:r|rot(?:ation)?|phi|theta|th) ?{_AXIS}"
+    rf"|(?:turn|twist|verdrehung) {_AXIS.replace('a>', 'b>')}",
     "u95 ": rf"(?:u ?95|exp(?:anded)? unc(?:ertainty)?) ?{_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} ?u ?95",
     "s": rf"(?:s|sd|std(?: dev)?|sigma|u|unc(?:ertainty)?) ?{_AXIS}"
@@ -115,7 +117,7 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     ``x y z`` positions; ``measured x``, ``nominal x``, ``deviation x``; ``dx`` displacements;
     ``unloaded x``, ``loaded x`` both of a pose; ``sx`` standard uncertainties; ``fx mx payload
     load`` loads; ``tcp x`` the marker in the tool frame; ``qw``, ``orientation ...``
-    turns; ``joint 3``; and labels.
+    axes, ``turn x`` how a load turned them; ``joint 3``; and labels.
     """
     if name in actuated:
         return f"joint {actuated.index(name) + 1}", 1.0
@@ -171,7 +173,7 @@ def file_units(texts: list[str]) -> dict[str, str]:
 def kind_of(meaning: str) -> str | None:
     """Kind of the unit that a meaning has; None where it has none that could be told."""
     word = meaning.rpartition(" ")[2]
-    if meaning.startswith(("joint ", "orientation ")):
+    if meaning.startswith(("joint ", "orientation ", "turn ")):
         return "angle"
     if word in ("fx", "fy", "fz", "payload"):
         return "force"

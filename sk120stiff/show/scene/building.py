@@ -116,8 +116,9 @@ def poses_of(
     used = data.masked()
     load_cases = load_cases_of(robot, used)
     models = models or {}
-    if used.absolute is None:
-        measured = None if used.displacement is None else _in_base(load_cases, used.displacement)
+    went = used.displacement if used.absolute is None else used.absolute.channels.displacement
+    if used.absolute is None or went is not None:
+        measured = None if went is None else _in_base(load_cases, went)
         predicted = {
             name: _in_base(load_cases, m.predict(load_cases)) for name, m in models.items()
         }

@@ -86,11 +86,6 @@ def test_a_row_without_a_position_is_left_out_and_said(tmp_path: Path) -> None:
         ("a,b\n1,2\n", {}, ["no format", "--columns"]),
         ("x1,z1,q1,q2\n1,2,3,4\n", {}, ["'y1' is missing"]),
         ("x1,y1,z1,x2,y2,q1,q2\n1,2,3,4,5,7,8\n", {}, ["'z2' is missing"]),
-        (
-            "dx1,dy1,dz1,dx2,dy2,dz2,q1,q2,payload\n1,2,3,4,5,6,7,8,9\n",
-            {},
-            ["displacements under load are of one point", "markers 1 and 2", "--marker 1"],
-        ),
         (ROWS, {"marker": "3"}, ["no marker 3"]),
         ("x1,y1,z1,sholder,slide\n1,2,3,4,5\n", {}, ["'shoulder'", "'sholder'", "--joints"]),
         ("x1,y1,z1,q1\n1,2,3,4\n", {}, ["'slide' has no column 'q2'"]),

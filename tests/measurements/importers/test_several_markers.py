@@ -1,13 +1,19 @@
-"""Files with several markers: displacements are of one point, and a file of several asks which."""
+"""Files with several markers: one that is chosen, or all where it is told where each sits."""
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers import FORMATS, Source
 from sk120stiff.measurements.importers.run import opened
-from sk120stiff.measurements.importers.several_markers import of_marker, refuse_several_points
+from sk120stiff.measurements.importers.several_markers import (
+    of_marker,
+    refuse_several_points,
+    with_places,
+)
+from sk120stiff.measurements.importers.told import Told
 from tests.measurements.importers.reading import SIX, draft_of, sheet_of
 
 HEADER = (
@@ -51,6 +57,29 @@ def test_displacements_of_several_points_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"markers M1, M2 and M3.*--marker M1"):
         refuse_several_points(draft_of(tmp_path, table("M1", "M2", "M3"), SIX))
     refuse_several_points(draft_of(tmp_path, table("M1"), SIX))
+
+
+SIDE_BY_SIDE = (
+    "pose,q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],fx[N],fy[N],fz[N],"
+    "dx1[mm],dy1[mm],dz1[mm],dx2[mm],dy2[mm],dz2[mm]\n"
+    + "".join(f"P{k},{k},2,3,4,5,{k},0,0,-90,{k},1,2,3,4,5\n" for k in range(3))
+)
+AT = {"1": np.array([0.05, 0.0, 0.1]), "2": np.array([0.0, 0.08, 0.1])}
+
+
+def test_displacements_of_markers_whose_places_are_told(tmp_path: Path) -> None:
+    draft = draft_of(tmp_path, SIDE_BY_SIDE, SIX)
+    with pytest.raises(InputError, match=r"markers 1 and 2.*--point '1=0,0,150 mm'.*--marker 1"):
+        refuse_several_points(draft)
+    found = with_places(draft, Told(points=AT))
+    refuse_several_points(found)
+    assert found.marker_of == ("1", "2") * 3 and found.displaced
+    assert not any(header == "marker" for header, _ in found.other)
+    assert with_places(draft, Told()) is draft
+    with pytest.raises(InputError, match="no place is told of 2"):
+        with_places(draft, Told(points={"1": AT["1"]}))
+    with pytest.raises(InputError, match="no marker is 3"):
+        with_places(draft, Told(points={**AT, "3": AT["1"]}))
 
 
 def test_points_that_nobody_named_are_told_by_where_they_are(tmp_path: Path) -> None:
