@@ -27,10 +27,9 @@ FOLLOWS = {
     "bend it.",
 }
 OF_SEVERAL = (
-    "{rows} rows at {useful} of {poses} poses differ in load from the lightest of their pose. Of "
-    "several markers they are taken as positions, not subtracted from one another: geometry, "
-    "markers and springs come out of one fit, in which what a pose has of its own is one error of "
-    "all its readings."
+    "{rows} rows at {useful} of {poses} poses differ in load from the lightest of their pose. {of} "
+    "they are taken as positions, not subtracted from one another: geometry, markers and springs "
+    "come out of one fit, in which what a pose has of its own is one error of all its readings."
 )
 UNKNOWN = (
     "They stay in the tracker's own axes (position: {frame: unknown}): 'identify' and 'explain' "
@@ -138,7 +137,10 @@ def identifiable(found: Imported) -> str:
     if found.mode != "load pairs":
         text = FOLLOWS[found.mode].format(poses=poses)
         if found.mode == "positions" and found.differences:
-            text = OF_SEVERAL.format(rows=found.differences, useful=found.useful_poses, poses=poses)
+            of = "Of several markers" if found.orientation is None else "With their orientations"
+            text = OF_SEVERAL.format(
+                rows=found.differences, useful=found.useful_poses, poses=poses, of=of
+            )
         if found.mode == "displacements":
             return text
         return f"{text} {UNKNOWN if not found.registered else 'They are written in base axes.'}"

@@ -13,11 +13,13 @@ import sk120stiff as sk
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.measurements.channels import Channels, Moved
+from sk120stiff.measurements.importers import import_readings
 from sk120stiff.model import Model
 from sk120stiff.model.pose_reading import move_by_load
-from sk120stiff.robot.rotations import rotation_vector
-from tests.absolute.arm import Arm, Array, poses
-from tests.absolute.loaded_arm import MARKERS, SPRINGS, moved, write_moved
+from sk120stiff.robot.rotations import rotation_of, rotation_vector
+from tests.absolute.arm import NAMES, TURN, Arm, Array, errors, poses, tracked, urdf
+from tests.absolute.loaded_arm import MARKERS, PULLED, SPRINGS, moved, rests, write_moved
 from tests.absolute.test_sensitivities import load_cases_of, with_everything
 from tests.effects.arms import ARMS, LOOPED, arm
 
@@ -263,3 +265,45 @@ def test_a_load_misread_in_axes_of_the_base_is_named(tmp_path: Path) -> None:
     assert {n for n in names if not n.startswith("joint_springs")} == {"force_scale:sensor"}
     assert any(p.name.endswith("scale_base_z") for p in answer.final.model.parameters)
     assert answer.families["compliance"] > 10.0 * answer.families["load"]
+
+
+def test_load_pairs_with_orientations_stay_positions(tmp_path: Path) -> None:
+    """Differences would leave out how the load turned the tool; the marker is where it pulls."""
+    a = poses(30, 12)
+    true = replace(errors(3), weighs=False)
+    rng = np.random.default_rng(4)
+    pull = 350.0 * rng.normal(size=(len(a), 3))
+    sits = Rotation.from_rotvec([0.3, -0.6, 1.1])
+    lines = [
+        ",".join([*(f"{n}[rad]" for n in NAMES), "fx[N],fy[N],fz[N],x[mm],y[mm],z[mm],qw,qx,qy,qz"])
+    ]
+    for force in (0.0 * pull, pull):
+        x, R = rests(true, a, force)
+        seen = tracked(x + np.einsum("nij,j->ni", R, PULLED)) + SIGMA * rng.normal(size=x.shape)
+        turned = TURN * Rotation.from_matrix(R) * sits
+        turned = turned * Rotation.from_rotvec(2e-4 * rng.normal(size=x.shape))
+        numbers = np.hstack([a, force, 1e3 * seen, np.roll(turned.as_quat(), 1, axis=1)])
+        lines += [",".join(f"{v:.9g}" for v in row) for row in numbers]
+    (tmp_path / "pairs.csv").write_text("\n".join(lines) + "\n")
+    (tmp_path / "six.urdf").write_text(urdf(False))
+    robot = robot_of(tmp_path / "pairs.csv")
+    found = import_readings(tmp_path / "pairs.csv", robot)
+    assert found.mode == "positions" and found.orientation is not None
+    assert found.fitted is not None and found.fitted.rms < 3e-3  # by the rows without load
+    at = found.settings["force"]["point"]["xyz"]
+    np.testing.assert_allclose(at, 1e3 * PULLED, atol=2.0)
+    said = found.readings.absolute
+    assert said is not None and said.channels.rotation is not None
+    fitted = sk.fit(sk.base_model(robot), found.readings)
+    values = np.array([p.internal for p in fitted.parameters if p.effect.joint_spring])
+    assert np.all(np.abs(values[:5] / SPRINGS[:5] - 1.0) < 0.03)
+
+
+def test_an_axis_of_a_turn_that_was_not_read_says_nothing() -> None:
+    turn = np.array([[0.1, 0.2, 0.3]])
+    foretold = Moved(np.zeros((1, 3)), rotation_of(turn), np.zeros((1, 6, 0)))
+    channels = Channels(turn=np.array([[0.1, 0.2, np.nan]]))
+    nowhere = np.zeros((1, 3)), np.eye(3)[None], np.zeros((1, 6, 0))
+    gap, slope = channels.project(*nowhere, foretold)
+    assert gap.shape == (2,) and slope.shape == (2, 0)
+    np.testing.assert_allclose(gap, 0.0, atol=1e-15)

@@ -82,6 +82,8 @@ def settings_for(
         settings["point"] = _point_entry(xyz)
     if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
         settings["force"] = {"frame": draft.loads.frame}
+        if mode == "positions" and not several and not known and xyz.any():
+            settings["force"]["point"] = _point_entry(xyz)
     if mode == "positions":
         settings["position"] = {"frame": "base" if registered else "unknown"}
         if any(header in QUATERNION for header, _ in draft.other):

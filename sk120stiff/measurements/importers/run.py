@@ -161,6 +161,10 @@ def import_readings(
         refuse_several_points(draft)
     draft = with_stations(draft, mode, robot, told)
     laid = placed(draft, mode, robot, told)
+    if mode == "load pairs":  # differences would leave out how the load turned the tool
+        of_pairs = understood(draft, robot, told, "positions", laid.fitted, laid.rows)
+        if isinstance(of_pairs, Orientation):
+            mode = "positions"
     turned, registered, doubts = axes(laid.fitted, mode, into_base, told)
     read = understood(draft, robot, told, mode, laid.fitted, laid.rows)
     draft = with_orientation(draft, read, laid.fitted, registered=registered)
