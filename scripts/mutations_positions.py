@@ -31,7 +31,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
         "model/sensitivities.py", *tests("absolute", "moved"),
         turns_against_nothing=("on[:, 3:, 3:] = turn", "on[:, 3:, 3:] = 0.0"),
         turns_since_zero_unturned=("adjoint_0 = on @ adjoint_0", "adjoint_0 = adjoint_0 + 0.0"),
-        turns_in_axes_of_the_base=("moved[:, 3:] = axes @ moved[:, 3:]", "pass"),
+        turns_in_axes_of_the_base=("parts.append(axes @ moved[:, 3:])", "parts.append(moved[:, 3:])"),
     ),
     *of(
         "model/standing.py", *tests("absolute", "moved"),

@@ -110,8 +110,10 @@ def _as_read(solution: Solution, moved: Array) -> Array:
     axes = np.swapaxes(solution.load_cases.reading_axes, -1, -2)
     turn = axes @ solution.readings.matrix
     if (turn != np.eye(3)).any():
-        moved[:, :3] = turn @ moved[:, :3]
-        moved[:, 3:] = axes @ moved[:, 3:]
+        parts = [turn @ moved[:, :3]]
+        if moved.shape[1] > 3:
+            parts.append(axes @ moved[:, 3:])
+        moved = np.concatenate(parts, axis=1)
     for part, columns in solution.readings.columns:
         moved[:, :3, part] += axes @ columns
     return moved

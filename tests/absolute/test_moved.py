@@ -307,3 +307,14 @@ def test_an_axis_of_a_turn_that_was_not_read_says_nothing() -> None:
     gap, slope = channels.project(*nowhere, foretold)
     assert gap.shape == (2,) and slope.shape == (2, 0)
     np.testing.assert_allclose(gap, 0.0, atol=1e-15)
+
+
+def test_a_row_may_state_how_uncertain_its_displacement_is(tmp_path: Path) -> None:
+    a, force = pulls(3, 13)
+    columns: dict[str, Array] = dict(six_columns(a, force))
+    columns |= {f"s{axis}[um]": np.array([5.0, 6.0, 7.0, 8.0, 9.0, 10.0]) for axis in "xyz"}
+    read = sk.read(write_moved(tmp_path, a, force, columns, POINT))
+    assert read.absolute is not None
+    channels = read.absolute.channels
+    assert channels.stated("displacement") and not channels.stated("turn")
+    np.testing.assert_allclose(channels.scale("displacement")[::3], 1e-6 * np.arange(5.0, 11.0))
