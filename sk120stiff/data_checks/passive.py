@@ -47,19 +47,33 @@ def passive(columns: Array, d: Array) -> Passive:
     known = np.isfinite(y)
     if not known.all():
         A, y = A[known], y[known]
-    size = float(y @ y)
-    if size == 0.0 or not A.shape[1]:
+    size, gram, along = float(y @ y), A.T @ A, A.T @ y
+    c = _compliances(gram, along) if size > 0.0 else None
+    if c is None:
         return Passive(0.0, size / max(len(y), 1), len(y))
-    gram, along = A.T @ A, A.T @ y
-    scale = np.sqrt(np.diag(gram))
-    seen = np.flatnonzero(scale > UNSEEN * scale.max())
-    if not len(seen):
-        return Passive(0.0, size / len(y), len(y))
-    by = scale[seen]
-    c = _non_negative(gram[np.ix_(seen, seen)] / np.outer(by, by), along[seen] / by)
-    rest = y - A[:, seen] @ (c / by)
+    rest = y - A @ c
     left = float(rest @ rest)
     return Passive(1.0 - left / size, left / len(y), len(y))
+
+
+def of_sums(gram: Array, along: Array, size: float, count: int) -> Passive:
+    """The same from AᵀA, Aᵀd and dᵀd of `count` numbers; less exact where little is left."""
+    c = _compliances(gram, along) if size > 0.0 else None
+    if c is None:
+        return Passive(0.0, size / max(count, 1), count)
+    left = max(float(size - 2.0 * along @ c + c @ gram @ c), 0.0)
+    return Passive(1.0 - left / size, left / count, count)
+
+
+def _compliances(gram: Array, along: Array) -> Array | None:
+    """(k,) compliances from zero up that leave least; None where nothing shows any."""
+    scale = np.sqrt(np.diag(gram))
+    seen = np.flatnonzero(scale > UNSEEN * scale.max(initial=0.0))
+    if not len(seen):
+        return None
+    by, out = scale[seen], np.zeros(len(gram))
+    out[seen] = _non_negative(gram[np.ix_(seen, seen)] / np.outer(by, by), along[seen] / by) / by
+    return out
 
 
 def _non_negative(gram: Array, along: Array) -> Array:

@@ -15,6 +15,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.from_a_row_on import from_a_row_on
 from sk120stiff.data_checks.passive import Passive, passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
 from sk120stiff.data_checks.slips import floor, floors, of_axes, of_joints, of_rows, sign_of
@@ -89,7 +90,7 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
         robot: The rigid robot. Springs are not asked for: they are refitted for every correction.
         measurements: Readings; masked ones are left out.
     """
-    sheet = sheet_of(robot, measurements)
+    sheet, lines = sheet_of(robot, measurements), measurements.line
     if sheet is None or not sheet.exists() or not sheet.moves:
         return None
     stated = measurements.noise.sigma
@@ -99,6 +100,12 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
         together = _joints_together(start)
         if together is not None and _clearly(now, together, CLEARER):
             now, rival = together, None
+    if not now.corrections and now.found.share < DOUBTFUL and len(sheet.kept) == len(lines):
+        below = from_a_row_on(sheet, lines, _drives(sheet.columns(), sheet.told, robot.n))
+        if below is not None:
+            mended = Tried((below.correction,), sheet, below.found)
+            if _clearly(start, mended, CLEARER_TOGETHER):
+                now = mended
     if not now.corrections or now.found.share < SOUND:
         return None
     return Slip(now.corrections, start.found.share, now.found.share, rival)
@@ -153,7 +160,12 @@ def _tried(now: Tried, corrections: Iterable[Correction]) -> Iterator[Tried]:
 def _columns(sheet: Sheet, told: int) -> Array:
     """Unit displacements; where little was told only of the drives, or they would explain all."""
     columns = sheet.columns()
-    return columns if told >= columns.shape[2] + SPARE else columns[:, :, : sheet.robot.n]
+    return columns[:, :, : _drives(columns, told, sheet.robot.n)]
+
+
+def _drives(columns: Array, told: int, n: int) -> int | None:
+    """How many of the unit compliances are asked for: all (None), or those of the drives."""
+    return None if told >= columns.shape[2] + SPARE else n
 
 
 def _clearly(now: Tried, other: Tried, ratio: float) -> bool:

@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
+from sk120stiff.data_checks.turns import turn_slip
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.identify.absolute.calibrate import Calibration
@@ -318,3 +319,14 @@ def test_a_row_may_state_how_uncertain_its_displacement_is(tmp_path: Path) -> No
     channels = read.absolute.channels
     assert channels.stated("displacement") and not channels.stated("turn")
     np.testing.assert_allclose(channels.scale("displacement")[::3], 1e-6 * np.arange(5.0, 11.0))
+
+
+def test_turns_that_fit_in_two_ways_are_not_doubted(tmp_path: Path) -> None:
+    """An arm that yields about the plumb line alone: x and y of its turns may as well be swapped."""
+    a, force = pulls(12, 14)
+    d, turn = moved(Arm(compliance=SPRINGS * np.eye(6)[0], weighs=False), a, force, MARKERS["A"])
+    columns = {f"d{axis}[mm]": 1e3 * d[:, k] for k, axis in enumerate("xyz")}
+    columns |= {f"dr{axis}[mrad]": 1e3 * turn[:, k] for k, axis in enumerate("xyz")}
+    path = write_moved(tmp_path, a, force, columns, POINT)
+    assert np.abs(turn[:, 2]).max() > 1e-4 > 1e3 * np.abs(turn[:, :2]).max()
+    assert turn_slip(robot_of(path), sk.read(path)) is None
