@@ -322,7 +322,7 @@ def test_a_row_may_state_how_uncertain_its_displacement_is(tmp_path: Path) -> No
 
 
 def test_turns_that_fit_in_two_ways_are_not_doubted(tmp_path: Path) -> None:
-    """An arm that yields about the plumb line alone: x and y of its turns may as well be swapped."""
+    """An arm that yields about the plumb line alone: x and y may as well be swapped."""
     a, force = pulls(12, 14)
     d, turn = moved(Arm(compliance=SPRINGS * np.eye(6)[0], weighs=False), a, force, MARKERS["A"])
     columns = {f"d{axis}[mm]": 1e3 * d[:, k] for k, axis in enumerate("xyz")}
