@@ -39,6 +39,7 @@ def command(
     plan: Path,
     out: Annotated[Path, typer.Option("--out")],
     noise: str | None = None,
+    noise_rotation: str | None = None,
     zero: Zero = Zero.shared,
     growth: Annotated[float, typer.Option(min=0.0, max=0.5)] = 0.0,
     schedule: Steps = Steps.as_given,
@@ -54,9 +55,12 @@ def command(
 
     Args:
         plan (PLAN): Poses and loads: measurements without displacements (others are not looked at).
+            Of positions, single readings and turns each row is read as it stands there.
         out (CSV): Where to write them.
         noise (LENGTH): Standard uncertainty of one reading per axis, e.g. '10 um'; or 'stated':
             what the plan's YAML file says, an instrument's ray too. [default: none]
+        noise_rotation (ANGLE): Standard uncertainty of one angle that is read, e.g. '20 urad'.
+            [default: what the plan's YAML file says, else none]
         zero: One zero reading for all loads of a pose, or one for each.
         growth: Noise that grows with the displacement: its share.
         schedule: Each load alone, in steps up to it, or up and down.
@@ -67,12 +71,19 @@ def command(
     """
     declare_readings(out)
     readings, robot = open_data(plan)
+    if positions and readings.absolute is not None:
+        raise InputError(
+            "this plan says itself what is read", where="--positions", remedy="Leave it out."
+        )
     believed = model_for(robot, model)
     made = simulate(
         believed,
         readings,
         noise=_noise(noise, growth, zero, readings),
         schedule=Schedule(schedule.value, levels, repeats, zero.value),
+        rotation_noise=None
+        if noise_rotation is None
+        else parse_size(noise_rotation, "angle", where="--noise-rotation", like="20 urad"),
         outliers=outliers,
         seed=seed,
     )
@@ -98,7 +109,10 @@ def command(
         "out": out,
     }
     said = (
-        f"{loaded.n_readings} readings at {len(loaded.poses)} poses, displacements up to "
+        f"{loaded.n_readings} rows at {len(loaded.poses)} poses, read as the plan has them, seed "
+        f"{seed}."
+        if loaded.absolute is not None
+        else f"{loaded.n_readings} readings at {len(loaded.poses)} poses, displacements up to "
         f"{largest * 1e6:.4g} µm, seed {seed}."
     )
     return Answer(document, [said, f"Written to {out} and {out.with_suffix('.yaml')}."])

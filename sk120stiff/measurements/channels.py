@@ -24,6 +24,7 @@ Kind = Literal[
 KINDS: tuple[Kind, ...] = get_args(Kind)
 ANGLES = ("rotation", "inclination", "turn")  # the other kinds are lengths
 OF_AXES = ("position", "rotation", "displacement", "turn")  # three numbers; the others are one
+BY_LOAD = ("shift", "displacement", "turn")  # what only a load makes
 _OF_ROWS = ("position", "displacement")  # whose uncertainty a row may state
 
 
@@ -149,12 +150,12 @@ class Channels:
     @property
     def by_load(self) -> bool:
         """Is anything read that only a load makes?"""
-        return any(x is not None for x in (self.shift, self.displacement, self.turn))
+        return any(getattr(self, kind) is not None for kind in BY_LOAD)
 
     @property
     def displacements_alone(self) -> bool:
         """Was nothing read but what a load makes?"""
-        return set(self.present) <= {"shift", "displacement", "turn"}
+        return set(self.present) <= set(BY_LOAD)
 
     def project(
         self,

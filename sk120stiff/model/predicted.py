@@ -138,16 +138,25 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
     load_cases = load_cases_of(model.robot, measurements)
     if measurements.absolute is None:
         return predict_with_uncertainty(model, load_cases)
-    if measurements.absolute.frame == "unknown" and not any(
-        isinstance(effect, Viewpoint) for effect in model.effects
-    ):
+    refuse_unknown_place(model, measurements)
+    return predict_channels(model, measurements)
+
+
+def refuse_unknown_place(model: Model, measurements: Measurements) -> None:
+    """Stop where readings are in an instrument's own axes, and the model has no frame for it.
+
+    Raises:
+        InputError: So it is.
+    """
+    said = measurements.absolute
+    known = any(isinstance(effect, Viewpoint) for effect in model.effects)
+    if said is not None and said.frame == "unknown" and not known:
         raise InputError(
             "the model does not know where the tracker stands",
             where=str(measurements.path or "measurements"),
             remedy="Give a model that was fitted to readings of this tracker, as 'identify' and "
             "'explain' write it.",
         )
-    return predict_channels(model, measurements)
 
 
 def predict_channels(model: Model, measurements: Measurements) -> Predicted:

@@ -15,6 +15,7 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.model import Model
 from sk120stiff.plan.schedule import Schedule, scheduled
+from sk120stiff.plan.simulated_channels import simulated_channels
 
 OUTLIER = (5.0, 20.0)  # least and largest size of an outlier, over the noise of its reading
 
@@ -24,7 +25,7 @@ class Simulated:
     """Simulated readings and what lies under them.
 
     Attributes:
-        measurements: The readings, displacements with noise.
+        measurements: The readings with noise: displacements, or channels as the plan has them.
         exact: (N, 3) displacements without noise [m].
         zero_error: (N, 3) error of the zero reading that each row subtracts [m]; equal within a
             zero group.
@@ -41,6 +42,8 @@ class Simulated:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: every reading with noise and without."""
+        if self.measurements.displacement is None:
+            return self.measurements._repr_html_() or repr(self)
         made, exact = (1e6 * np.asarray(x) for x in (self.measurements.displacement, self.exact))
         columns: dict[str, Iterable[object]] = {"pose": self.measurements.pose}
         columns |= {f"d{axis} [µm]": made[:, k] for k, axis in enumerate("xyz")}
@@ -53,6 +56,7 @@ def simulate(
     plan: Measurements,
     *,
     noise: NoiseModel | Instrument | None = None,
+    rotation_noise: float | None = None,
     schedule: Schedule | None = None,
     outliers: float = 0.0,
     seed: int = 0,
@@ -60,7 +64,8 @@ def simulate(
     """Readings that a modelled arm would give.
 
     A loaded reading and a zero reading are drawn each by itself, by the law of
-    `measurements.noise`; a displacement is their difference.
+    `measurements.noise`; a displacement is their difference. Of a plan of positions, single
+    readings or turns the rows come back as they are, each cell with a reading of its own.
 
     Args:
         model: The truth, at exact equilibrium.
@@ -68,6 +73,8 @@ def simulate(
         noise: What one reading is worth; None: readings without noise. Rows that state their own
             uncertainty (sx, sy, sz) are drawn with that. Whether zero readings are shared says the
             schedule. An instrument is sharp along its ray and duller across it.
+        rotation_noise: Standard uncertainty of one angle that is read [rad], of plans that hold
+            angles; None: as the plan states it, else none.
         schedule: Load steps, repeats and zero readings; by default every row as given, zeros
             shared.
         outliers: Share of the loaded readings that are off by 5 to 20 times their noise in a random
@@ -75,8 +82,8 @@ def simulate(
         seed: Of the draw.
 
     Raises:
-        InputError: A plan without loads, a share that is none, or an instrument for displacements
-            in axes of the tool.
+        InputError: A plan without loads, a share that is none, an instrument for displacements in
+            axes of the tool, or what has no meaning for positions (a schedule, growing noise).
         Refusal: The springs cannot hold a load.
 
     Examples:
@@ -92,6 +99,14 @@ def simulate(
         raise InputError(
             "outliers are measured in units of the noise, and there is none",
             remedy="Give a noise, e.g. --noise '10 um'.",
+        )
+    if plan.absolute is not None:
+        return _of_channels(model, plan, noise, rotation_noise, schedule, outliers, seed)
+    if rotation_noise is not None:
+        raise InputError(
+            "no angle is read in this plan",
+            where=str(plan.path or "plan"),
+            remedy="Leave the noise of rotations out.",
         )
     steps = schedule or Schedule()
     readings = scheduled(plan, steps)
@@ -129,6 +144,43 @@ def simulate(
         notes=(),
     )
     return Simulated(made, exact, zero_error, hit)
+
+
+def _of_channels(
+    model: Model,
+    plan: Measurements,
+    noise: NoiseModel | Instrument | None,
+    rotation_noise: float | None,
+    schedule: Schedule | None,
+    outliers: float,
+    seed: int,
+) -> Simulated:
+    """See `simulate`: of positions, single readings and turns."""
+    growing = isinstance(noise, Instrument) or (noise is not None and noise.growth > 0.0)
+    if growing or (schedule is not None and schedule != Schedule(zero=schedule.zero)):
+        raise InputError(
+            "load steps, repeats, growing noise and a ray are those of displacements, and this "
+            "plan is read row by row",
+            where=str(plan.path or "plan"),
+            remedy="Leave them out: write every row that is to be read into the plan.",
+        )
+    said = plan.absolute
+    stated = 0.0 if said is None else said.channels.sigma.get("rotation", 0.0)
+    rng = np.random.default_rng(seed)
+    hit: Mask = rng.random(plan.n_readings) < outliers
+    made = simulated_channels(
+        model,
+        plan.with_joints(model.robot.actuated, model.robot.kinds),
+        length=noise.sigma if isinstance(noise, NoiseModel) else 0.0,
+        angle=stated if rotation_noise is None else rotation_noise,
+        own_zero=schedule is not None and schedule.zero == "separate",
+        off=hit,
+        size=rng.uniform(*OUTLIER, plan.n_readings),
+        rng=rng,
+    )
+    source = f"simulated from a model of {model.robot.name}, seed {seed}"
+    exact = model.under(plan.gravity).predict(load_cases_of(model.robot, made))
+    return Simulated(replace(made, source=source), exact, np.zeros_like(exact), hit)
 
 
 def _seen(

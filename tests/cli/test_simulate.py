@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sk120stiff as sk
 from sk120stiff.measurements import read_measurements
 
 MODEL = "robots/motoman_sk120/model.yaml"
 PLAN = "robots/motoman_sk120/data/table2_measured.csv"
+from tests.absolute.arm import poses, write
 
 
 def test_rows_and_seed(run, tmp_path: Path) -> None:
@@ -125,3 +127,22 @@ def test_out_must_be_a_csv(run, tmp_path: Path) -> None:
     outcome = run("simulate", MODEL, PLAN, "--out", str(tmp_path / "made.txt"))
     assert outcome.code == 2
     assert ".csv" in outcome.stderr
+
+
+def test_a_plan_of_positions_is_read_row_by_row(run, tmp_path: Path) -> None:
+    """Of a tracker's campaign positions come back, rows without load among them."""
+    empty = np.full((12, 3), np.nan)
+    plan = write(
+        tmp_path, poses(12, 1), empty, "noise: {sigma: 20, unit: um}\n",
+        more=",qw,qx,qy,qz", cells=[",,,"] * 12,
+    )  # fmt: skip
+    options = ("--noise", "stated", "--noise-rotation", "50 urad", "--seed", "2")
+    out = tmp_path / "made.csv"
+    found = run("simulate", str(tmp_path / "six.urdf"), str(plan), *options, "--out", str(out))
+    assert found.code == 0, found.stderr
+    assert "12 rows at 12 poses, read as the plan has them, seed 2" in found.stdout
+    made = sk.read(out).absolute
+    assert made is not None and made.channels.present == ("position", "rotation")
+    assert made.channels.sigma["rotation"] == pytest.approx(5e-5)
+    refused = run("simulate", "six.urdf", str(plan), "--positions", "--out", str(out))
+    assert refused.code == 2
