@@ -7,10 +7,10 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.measurements import read_measurements
+from tests.absolute.arm import poses, write
 
 MODEL = "robots/motoman_sk120/model.yaml"
 PLAN = "robots/motoman_sk120/data/table2_measured.csv"
-from tests.absolute.arm import poses, write
 
 
 def test_rows_and_seed(run, tmp_path: Path) -> None:
