@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.cli.frame import Answer
+from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.cli.tables import table
 from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import listed
@@ -83,6 +84,10 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     if answer.families:
         told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())
         shown.append(f"What each takes off beside the others [{unit}]: {told}.")
+    at = "At the measured loads" if answer.displaced else "At the measured poses"
+    shown += budget_tables_of(
+        at, "µm rms per axis", answer.budget, answer.joints_budget, cause="cause"
+    )
     shown += answer.weight()
     shown += findings(answer.final, answer.readings)
     shown += answer.dropped

@@ -24,7 +24,12 @@ def budget_tables(answer: Explanation) -> list[object]:
 
 
 def budget_tables_of(
-    where: str, unit: str, effects: Sequence[Share], joints: Sequence[Share], size: float = 1.0
+    where: str,
+    unit: str,
+    effects: Sequence[Share],
+    joints: Sequence[Share],
+    size: float = 1.0,
+    cause: str = "what yields",
 ) -> list[object]:
     """The largest shares, and how many there are; joints where more than a spring yields at one.
 
@@ -32,13 +37,14 @@ def budget_tables_of(
         where, unit: Of the title.
         effects, joints: The shares.
         size: Times the rms per axis, what is printed.
+        cause: What the effects are.
     """
     seen = [share for share in effects if share.rms > 0.0]
     if not seen:
         return []
     most = f", the largest {LISTED} of {len(seen)}" if len(seen) > LISTED else ""
     rows = [(share.name, *_sized(share, size)) for share in seen[:LISTED]]
-    shown: list[object] = [table(f"{where}{most} [{unit}]", ["what yields", "moves", "±"], rows)]
+    shown: list[object] = [table(f"{where}{most} [{unit}]", [cause, "moves", "±"], rows)]
     if any(len(share.members) > 1 for share in joints):
         rows = [(with_members(share), *_sized(share, size)) for share in joints if share.rms > 0.0]
         title = f"{where}, joint by joint [{unit}]"

@@ -12,7 +12,9 @@ from scipy.spatial.transform import Rotation
 import sk120stiff as sk
 from sk120stiff.data_checks.turns import turn_slip
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.explain.absolute.document import verdict_of_positions
 from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.next_step import next_step_of_positions
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.measurements.channels import Channels, Moved
 from sk120stiff.measurements.importers import import_readings
@@ -152,6 +154,17 @@ def test_a_base_that_rocks_is_named(tmp_path: Path) -> None:
     assert answer.verdict == "named" and "base_rocking:base" in names
     assert {name for name in names if not name.startswith("joint_springs")} == {"base_rocking:base"}
     assert answer.steps[-1].heldout_rms < 1.1 * SIGMA
+    arm = Arm(compliance=SPRINGS, weighs=False)
+    rocks = moved(arm, a, force, MARKERS["A"], ROCKING)[0] - moved(arm, a, force, MARKERS["A"])[0]
+    budget = {share.name: share for share in answer.budget}
+    share = budget["base_rocking:base"]
+    assert share.std is not None
+    assert abs(share.rms - np.sqrt(np.mean(rocks**2))) < 3.0 * share.std + 1e-6
+    assert answer.budget[0].name in next_step_of_positions(answer)
+    entries = verdict_of_positions(answer)["budget"]
+    assert {item["name"]: item["rms_um"] for item in entries}["base_rocking:base"] == (
+        pytest.approx(1e6 * share.rms)
+    )
 
 
 def test_several_markers_under_one_load(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from sk120stiff.explain.answer.document import (
     intervals_of,
     micrometres,
     parameter_entry,
+    share_entries,
 )
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.files import csv_text, write_atomically
@@ -62,6 +63,8 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
         "families": [
             {"name": name, "share_um": um(share)} for name, share in answer.families.items()
         ],
+        "budget": share_entries(answer.budget),
+        "budget_joints": share_entries(answer.joints_budget),
         "springs_share": answer.springs,
         "remainder": {
             **remainder_entry(final),

@@ -5,18 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sk120stiff.effects import Effect
 from sk120stiff.explain.absolute.accounts import GapStep, HeldOutFile
 from sk120stiff.explain.absolute.advice import NextPoses
+from sk120stiff.explain.absolute.budget import budget_of
 from sk120stiff.explain.absolute.choose import Gain
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Contender, Detectable, likely
 from sk120stiff.identify import Calibration
 from sk120stiff.identify.absolute.remainder import LEVEL, Size, remainder_sentences
 from sk120stiff.measurements import Measurements
+from sk120stiff.model import Share
 
 if TYPE_CHECKING:
     from sk120stiff.show import Report
@@ -96,6 +99,25 @@ class Explained:
         gap = f"{first:.3g} → {last:.3g}" if self.findings else f"{first:.3g}"
         said = f"{self.verdict} {names}".rstrip()
         return f"<Explained: {said}; gap {gap} {self.final.problem.unit} rms>"
+
+    @cached_property
+    def _budgets(self) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
+        return budget_of(self.final)
+
+    @property
+    def budget(self) -> tuple[Share, ...]:
+        """What each effect moves the marker by at the readings, the largest first."""
+        return self._budgets[0]
+
+    @property
+    def joints_budget(self) -> tuple[Share, ...]:
+        """What spring, gear and bearing of each joint move it by together."""
+        return self._budgets[1]
+
+    @property
+    def displaced(self) -> bool:
+        """Was only what a load does read, and not where things stand?"""
+        return self.final.problem.channels.displacements_alone
 
     @property
     def lacking(self) -> bool:

@@ -18,7 +18,7 @@ def headline(answer: Explained) -> str:
             "open: what is left may be noise."
         )
     if answer.verdict == "none":
-        return "Model and data agree: nothing is missing that these positions show."
+        return "Model and data agree: nothing is missing that these readings show."
     if answer.verdict == "outside":
         return "Something is missing that no effect of the catalogue explains for sure."
     left = answer.final.form is not None or answer.lacking
@@ -43,9 +43,16 @@ def next_step_of_positions(answer: Explained) -> str:
     unit, whole = answer.final.problem.unit, answer.final.problem.rms_unit
     use = f"Use model.yaml: at poses that no fit saw it is off by {last:.4g} {whole}"
     if last < first:
-        use += f" where the registered arm alone is off by {first:.4g} {unit}"
+        rigid = "a rigid arm" if answer.displaced else "the registered arm alone"
+        use += f" where {rigid} is off by {first:.4g} {unit}"
     said = [f"{use}."]
-    if answer.families:
+    if answer.displaced and answer.budget:
+        most = answer.budget[0]
+        said.append(
+            f"{most.name} moves the point most, {1e6 * most.rms:.4g} µm rms per axis: look there "
+            "first if the arm is to be mended."
+        )
+    elif answer.families:
         largest = max(answer.families, key=lambda name: answer.families[name])
         share = f"{1e6 * answer.families[largest]:.4g} {unit}"
         said.append(

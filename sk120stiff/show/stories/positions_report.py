@@ -21,6 +21,7 @@ from sk120stiff.show.report import (
     Section,
     Table,
 )
+from sk120stiff.show.stories.sizes_sections import budget_section
 from sk120stiff.show.wording import said_in, um
 
 
@@ -31,7 +32,9 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     size = _size(answer)
     figures = KeyFigures(
         [
-            KeyFigure("registered", um(first.heldout_rms), unit, size),
+            KeyFigure(
+                "rigid" if answer.displaced else "registered", um(first.heldout_rms), unit, size
+            ),
             KeyFigure("explained", um(end.heldout_rms), unit, "at poses left out"),
             *(
                 [KeyFigure("mean distance", um(away), "µm", "left out")]
@@ -63,8 +66,10 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         + (f" Not told from: {', '.join(item.alternatives)}." if item.alternatives else "")
         for item in answer.findings
     ]
+    where = "loads" if answer.displaced else "poses"
+    moves = budget_section(answer, f"at the measured {where}")
     return Report(
-        f"Positions explained: {data}",
+        f"{'Displacements' if answer.displaced else 'Positions'} explained: {data}",
         [
             Section(
                 "The answer",
@@ -77,7 +82,8 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
             Section(
                 "The gap, step by step", [_steps(answer), steps, *map(Note, answer.not_counted())]
             ),
-            *([_budget(answer, families)] if answer.families else []),
+            *([_budget(answer, families)] if len(answer.families) > 1 else []),
+            *([moves] if moves is not None else []),
             Section("Values", [_values(answer)]),
             Section(
                 "What else was found",
@@ -129,7 +135,7 @@ def _steps(answer: Explained) -> Picture:
         lambda: gap_waterfall(steps, noise_floor=stated, unit=unit),
         alt=f"Bars of the gap of {len(steps)} models; held out from {um(first.heldout_rms)} "
         f"to {um(end.heldout_rms)} {answer.final.problem.rms_unit}.",
-        caption="Bars: positions that were fitted. Diamonds: poses left out."
+        caption="Bars: readings that were fitted. Diamonds: poses left out."
         + ("" if stated is None else " Dashed: the stated noise."),
     )
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
+from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.findings import TaskBudget
 from sk120stiff.explain.judge.budget import within_joints
 from sk120stiff.explain.judge.gear_curve import GearCurve, gear_curves
@@ -131,7 +132,9 @@ SHOWN = 14  # shares that are drawn
 SMALL = 1e-3  # of the largest share: too small to draw
 
 
-def budget_section(answer: Explanation) -> Section | None:
+def budget_section(
+    answer: Explanation | Explained, at: str = "at the measured loads"
+) -> Section | None:
     """Bars and a table of the shares; None where nothing moves."""
     largest = max((share.rms for share in answer.budget), default=0.0)
     shares = [share for share in answer.budget if share.rms > SMALL * largest]
@@ -142,21 +145,22 @@ def budget_section(answer: Explanation) -> Section | None:
     return Section(
         "What moves the point",
         [
-            "Sizes at the measured loads. The parts add as vectors: they need not add up, and "
+            f"Sizes {at}. The parts add as vectors: they need not add up, and "
             "where two effects are alike, what one has the other may.",
             Picture(
                 lambda: budget_bars(
                     [share.name for share in drawn],
                     np.array([1e6 * share.rms for share in drawn]),
                     np.array([1e6 * (share.std or 0.0) for share in drawn]),
+                    label=f"µm rms per axis {at}, ± one standard error",
                     named=[finding.effect.id for finding in answer.findings],
                 ),
                 alt=f"Bars of {len(drawn)} shares: {told}.",
                 caption="What each effect moves the point by. Violet: what was named.",
             ),
-            _shares(_rows(shares), "Rms per axis at the measured loads, with its standard error."),
-            *_joint_by_joint(answer.joints_budget, "at the measured loads"),
-            *_task(answer.task),
+            _shares(_rows(shares), f"Rms per axis {at}, with its standard error."),
+            *_joint_by_joint(answer.joints_budget, at),
+            *_task(answer.task if isinstance(answer, Explanation) else None),
         ],
     )
 
@@ -199,7 +203,7 @@ def _joint_by_joint(every: Sequence[Share], where: str) -> list[Block]:
 
 
 def _shares(rows: list[tuple[object, ...]], caption: str) -> Table:
-    return Table(["what yields", "moves", "±"], rows, caption, ["", "µm", "µm"], digits=3)
+    return Table(["cause", "moves", "±"], rows, caption, ["", "µm", "µm"], digits=3)
 
 
 def _rows(shares: Sequence[Share]) -> list[tuple[object, ...]]:
