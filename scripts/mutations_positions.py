@@ -56,6 +56,21 @@ OF_POSITIONS: tuple[Fault, ...] = (
         turns_of_any_arm=("    if now >= NONE:", "    if now >= 0.0:"),
     ),
     *of(
+        "data_checks/from_a_row_on.py", *tests("data_checks", "from_a_row_on"),
+        rows_above_that_are_off_too=("own[row] + off[-1] - off[row]", "off[row] + off[-1] - off[row]"),
+        rows_from_the_best_of_few=("    for _ in range(2):", "    for _ in range(1):"),
+    ),
+    *of(
+        "plan/simulated_channels.py", *tests("plan", "simulated_channels"),
+        angles_as_noisy_as_lengths=("(angle if kind in ANGLES else length)", "length"),
+        readings_where_none_were=("if said.channels.present:", "if not said.channels.present:"),
+    ),
+    *of(
+        "explain/absolute/budget.py", *tests("absolute", "budget"), *tests("absolute", "moved"),
+        the_tracker_moves_the_arm=("isinstance(effect, Viewpoint | Mounting) or marks", "isinstance(effect, Mounting) or marks"),
+        a_load_moves_by_weight_too=("if problem.channels.displacements_alone:", "if not problem.channels.displacements_alone:"),
+    ),
+    *of(
         "explain/absolute/candidates.py", *tests("absolute", "moved"),
         loads_misread_by_sensors_alone=("    return max(laws, key=takes_off)", "    return laws[0]"),
     ),

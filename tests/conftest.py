@@ -3,9 +3,23 @@
 import os
 import signal
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
+from typing import Any
 
+import numpy as np
 import pytest
+
+# Of each module's RNG as it begins; a process holds many modules.
+_BEGINNING: dict[str, Mapping[str, Any]] = {}
+
+
+@pytest.fixture(autouse=True)
+def _same_draws(request: pytest.FixtureRequest) -> None:
+    """A test draws the same numbers from its module's RNG, whatever ran before it."""
+    drawn = getattr(request.module, "RNG", None)
+    if isinstance(drawn, np.random.Generator):
+        state = _BEGINNING.setdefault(request.module.__name__, drawn.bit_generator.state)
+        drawn.bit_generator.state = state
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
