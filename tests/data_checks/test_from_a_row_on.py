@@ -64,6 +64,17 @@ def test_a_row_that_is_masked_keeps_its_place() -> None:
     assert found is not None and f"from line {LINE} on" in found.said
 
 
+def test_of_many_rows_the_very_line_is_told() -> None:
+    """Some rows are tried, then those between the best two."""
+    arm = ur5()
+    many = arm.readings.select(np.tile(np.arange(arm.readings.n_readings), 7))
+    for row in (171, 174):
+        found = find_slip(arm.robot, lacking(many, "readings", row, 1))
+        assert found is not None
+        told = int(found.said.split("from line ")[1].split()[0])
+        assert told in (row + 2, row + 3)  # the first of them has no reading of its own at all
+
+
 def test_sums_say_what_rows_say() -> None:
     rng = np.random.default_rng(0)
     A, d = rng.normal(size=(20, 3, 5)) ** 2, rng.normal(size=(20, 3)) + 1.0

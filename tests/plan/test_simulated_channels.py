@@ -50,6 +50,9 @@ def test_every_kind_of_reading_is_made(kind: str, tmp_path: Path) -> None:
     ).measurements
     gap, sigma = _gap(model, noisy), _sigma(noisy)
     assert np.std(gap / sigma) == pytest.approx(1.0, abs=0.05)
+    assert noisy.absolute is not None
+    stated = noisy.absolute.channels.sigma
+    assert (stated["rotation"], stated["position"]) == (ANGLE, LENGTH)
     again = sk.read(sk.write_measurements(exact, tmp_path / "again.csv"))
     assert again.absolute is not None and again.absolute.channels.present == channels.present
 
