@@ -71,6 +71,14 @@ OF_POSITIONS: tuple[Fault, ...] = (
         a_load_moves_by_weight_too=("if problem.channels.displacements_alone:", "if not problem.channels.displacements_alone:"),
     ),
     *of(
+        "identify/absolute/pose_problem.py", *tests("absolute", "uneven_moved"),
+        poses_that_yield_alike=("        if self.channels.displacements_alone:\n            return self._by_springs\n", ""),
+    ),
+    *of(
+        "identify/absolute/gauss_newton.py", *tests("absolute", "uneven_moved"),
+        any_fall_will_do=("- WORTH * share * promised", "- 0.0 * promised"),
+    ),
+    *of(
         "explain/absolute/candidates.py", *tests("absolute", "moved"),
         loads_misread_by_sensors_alone=("    return max(laws, key=takes_off)", "    return laws[0]"),
     ),

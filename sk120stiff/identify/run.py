@@ -123,9 +123,12 @@ def refuse_for_positions(measurements: Measurements, **given: object) -> None:
     """
     unused = [name for name, value in given.items() if value]
     if unused:
+        said = measurements.absolute
+        moved = said is not None and said.channels.displacement is not None
+        what = "of several, or have turns" if moved else "positions"
         raise InputError(
-            f"{listed(unused)} {'is' if len(unused) == 1 else 'are'} for displacements, and these "
-            "readings are positions",
+            f"{listed(unused)} {'is' if len(unused) == 1 else 'are'} for displacements of one "
+            f"point, and these readings are {what}",
             where=str(measurements.path or "measurements"),
             remedy="Leave it out." if len(unused) == 1 else "Leave them out.",
         )

@@ -58,6 +58,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
+FEWEST_LOADED = 6  # the same where each is read by what loads do, several numbers to a pose
 EVEN = 0.5  # probability that one name at least must have to be confirmed
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
@@ -93,13 +94,7 @@ def explain_positions(
     joints = model.robot.actuated, model.robot.kinds
     readings = readings.with_joints(*joints)
     tell = progress or (lambda _phrase, _share: None)
-    if len(readings.masked().poses) < FEWEST:
-        raise InputError(
-            f"{len(readings.masked().poses)} poses: no other pose can confirm a name",
-            where=str(readings.path or "measurements"),
-            remedy=f"Measure at {FEWEST} poses or more; geometry alone comes from "
-            "'sk120stiff identify'.",
-        )
+    _refuse_few_poses(readings)
     tell("registering the tracker", 0.05)
     base = calibrate(
         model, readings, geometry=False, waves=False, shared=False, catalogue=catalogue
@@ -175,6 +170,27 @@ def _selected(
     found = choose(linear)
     laws = laws_at(linear, found.order, seen)
     return by_best_laws(linear, found.order, laws), found, laws, hidden
+
+
+def _refuse_few_poses(readings: Measurements) -> None:
+    """Stop where no other pose can confirm a name.
+
+    Raises:
+        InputError: There are too few.
+    """
+    said, count = readings.absolute, len(readings.masked().poses)
+    displaced = said is not None and said.channels.displacements_alone
+    fewest = FEWEST_LOADED if displaced else FEWEST
+    if count >= fewest:
+        return
+    alone = "geometry alone comes from 'sk120stiff identify'"
+    if displaced:
+        alone = "displacements of one point, without turns, are explained from two poses on"
+    raise InputError(
+        f"{count} poses: no other pose can confirm a name",
+        where=str(readings.path or "measurements"),
+        remedy=f"Measure at {fewest} poses or more; {alone}.",
+    )
 
 
 def _exactly(

@@ -16,6 +16,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.identify.solve.polish import Evaluate, Minimum
 
 STEPS, HALVINGS = 60, 8  # an unknown load on unknown springs takes a curved way
+WORTH = 0.1  # of the fall that a step promises, which it must bring: one that overshoots is halved
 ENOUGH = 1e-3  # a step that changes the predictions by less than this share of their noise is none
 
 
@@ -48,17 +49,20 @@ def gauss_newton(
             held = ((x <= bounds[0]) | (x >= bounds[1])) & np.isfinite(x)
             return Minimum(x, residual, jacobian, held, count)
         cost = _cost(residual, x, centre, span)
+        promised = cost - _cost(residual + jacobian @ step, x + step, centre, span)
+        share = 1.0
         for _ in range(HALVINGS):
             new = np.clip(x + step, *bounds)
             try:
                 found = evaluate(new)
             except Refusal:
-                step = 0.5 * step
+                step, share = 0.5 * step, 0.5 * share
                 continue
             count += 1
-            if _cost(found[0], new, centre, span) < cost * (1.0 + 1e-12):
+            enough = cost * (1.0 + 1e-12) - WORTH * share * promised
+            if _cost(found[0], new, centre, span) < enough:
                 break
-            step = 0.5 * step
+            step, share = 0.5 * step, 0.5 * share
         else:
             held = ((x <= bounds[0]) | (x >= bounds[1])) & np.isfinite(x)
             return Minimum(x, residual, jacobian, held, count)

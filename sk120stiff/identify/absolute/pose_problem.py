@@ -111,12 +111,14 @@ class PoseProblem(Problem):
         """(M, k) what may be a pose's own: an offset of each joint, and a shift of what is read.
 
         The shift is as large as joints make it, whatever they are: what bends behind them, or the
-        instrument's, turns nothing.
+        instrument's, turns nothing. Of what a load does alone, each joint yields otherwise.
         """
         joints = self.by_joints
+        if self.channels.displacements_alone:
+            return joints
         shift = np.zeros((len(joints), 3))
         for kind, part in zip(self.channels.present, self.channels.kinds, strict=True):
-            if kind in ("position", "displacement"):
+            if kind == "position":
                 axis = np.nonzero(self.channels.held(kind))[1]
                 lever = float(np.sqrt((joints[part] ** 2).sum(axis=1).mean()))
                 shift[part] = lever * np.eye(3)[axis]
@@ -124,7 +126,13 @@ class PoseProblem(Problem):
 
     @cached_property
     def by_joints(self) -> Array:
-        """(M, n) derivative of the readings by an offset of each actuated joint."""
+        """(M, n) derivative of the readings by an offset of each actuated joint [m or rad by rad].
+
+        Of what a load does alone, by the twist that each joint yields more, rms over the readings:
+        a drive that is softer at one pose is so under every load there. Rigid ones yield nothing.
+        """
+        if self.channels.displacements_alone:
+            return self._by_springs
         model = self.model
         robot = model.robot
         own = {effect.id for effect in model.effects}
@@ -141,6 +149,21 @@ class PoseProblem(Problem):
             for joint in robot.actuated
         ]  # fmt: skip
         return np.asarray(slope[:, columns])
+
+    @cached_property
+    def _by_springs(self) -> Array:
+        """(M, n) derivative by the twist of each joint's spring, the same share more everywhere."""
+        robot, cases = self.model.robot, self.load_cases
+        slope = replace(self, common=0.0).channel_gap(self.model.values, derivative=True)[1]
+        torques = robot.screws(cases.a, point=cases.force_point).torques(cases.wrench)
+        out, twists = np.zeros((len(slope), robot.n)), np.zeros((cases.count, robot.n))
+        for k, parameter in enumerate(self.model.parameters):
+            if parameter.effect.joint_spring:
+                j = robot.actuated.index(parameter.effect.where)
+                out[:, j] = slope[:, k] * parameter.internal
+                twists[:, j] = torques[:, j] * parameter.internal
+        usual = float(np.sqrt(np.mean(twists**2)))
+        return out / usual if usual > 0.0 else out
 
     @cached_property
     def known(self) -> Mask:
