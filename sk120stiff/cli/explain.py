@@ -89,7 +89,9 @@ def command(
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
             "--alpha": alpha != Options.alpha, "--prior": prior, "--task": task,
         })  # fmt: skip
-    start = Model(robot) if positions and model is None else start_model(robot, model)
+    by_load = readings.absolute is not None and readings.absolute.channels.displacement is not None
+    plain = positions and not by_load and model is None  # of displacements springs are no news
+    start = Model(robot) if plain else start_model(robot, model)
     inputs = [data, data.with_suffix(".yaml"), *(each for each in (holdout, model, task) if each)]
     driven = None if task is None else opened_task(task, robot, options.cell or Cell())
     with progress_bar("explain") as report:

@@ -194,7 +194,5 @@ def _places(texts: list[str]) -> tuple[Array | None, dict[str, Array]]:
                 remedy="Name the marker before each place: --point 'A=0,0,150 mm' --point "
                 "'B=50,0,150 mm'.",
             )
-        place_like = "0,0,150 mm"
-        named[name.strip()] = parse_values(place, "length", where="--point", like=place_like)
-    one = named.pop("", None)
-    return one, named
+        named[name.strip()] = parse_values(place, "length", where="--point", like="0,0,150 mm")
+    return named.pop("", None), named

@@ -113,9 +113,8 @@ def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[
     noise: dict[str, Any] = {}
     if size is not None:
         noise |= {"sigma": float(f"{1e6 * size:.12g}"), "unit": "um"}
-        if (
-            max(stated.get(kind, size) for kind in ("shift", "displacement")) > size
-        ):  # two readings of the gauge
+        since_zero = max(stated.get(kind, size) for kind in ("shift", "displacement"))
+        if since_zero > size:  # two readings of the gauge
             settings["displacement"] = {"frame": m.displacement_frame, "zero": "separate"}
     if turn is not None:
         noise |= {"rotation": float(f"{1e6 * turn:.12g}"), "rotation_unit": "urad"}

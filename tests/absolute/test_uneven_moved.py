@@ -40,8 +40,9 @@ def uneven(folder: Path, count: int, loads: int, seed: int, rocking: float = 0.0
     return write_moved(folder, a, force, columns, POINT + PLAIN)
 
 
-def beyond_springs(path: Path) -> tuple[Explained, set[str]]:
-    answer = sk.explain(Model(robot_of(path)), sk.read(path))
+def beyond_springs(path: Path, *, rigid: bool = True) -> tuple[Explained, set[str]]:
+    robot = robot_of(path)
+    answer = sk.explain(Model(robot) if rigid else sk.base_model(robot), sk.read(path))
     assert isinstance(answer, Explained)
     names = {finding.effect.id for finding in answer.findings}
     return answer, {name for name in names if not name.startswith("joint_springs")}
@@ -57,6 +58,18 @@ def test_no_impostor_is_named(seed: int, tmp_path: Path) -> None:
 def test_a_cause_is_named_beside_it(tmp_path: Path) -> None:
     _, others = beyond_springs(uneven(tmp_path, 8, 3, 5, ROCKING))
     assert others == {"base_rocking:base"}
+
+
+@pytest.mark.parametrize("rocking", [0.0, ROCKING])
+@pytest.mark.parametrize(("count", "loads"), [(6, 4), (8, 3), (12, 2)])
+def test_beside_springs_there_is_no_impostor(
+    count: int, loads: int, rocking: float, tmp_path: Path
+) -> None:
+    """As the command has it: springs are the base, and what is left without a law has no name."""
+    answer, others = beyond_springs(uneven(tmp_path, count, loads, 7, rocking), rigid=False)
+    assert others == ({"base_rocking:base"} if rocking else set())
+    assert answer.steps[0].label == "joint_springs"
+    assert answer.verdict == ("named" if rocking else "outside")
 
 
 def test_a_pose_yields_more_at_a_joint(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +17,8 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.noise_sizes import far_off
 from sk120stiff.identify.absolute.placed_anew import placed_anew
 from sk120stiff.measurements import Measurements
+
+RIGID = "rigid"  # the model that has no effect
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ def steps_of(
     """The gap as one named cause after the other joins, over the numbers `inside`."""
     metres = seen.problem.of_channels.undo
     whole = _whole(linear, seen) & np.isin(np.arange(len(linear.residual)), inside)
-    first = " + ".join(effect.id for effect in base.model.effects) or "rigid"
+    first = " + ".join(base_labels(base)) or RIGID
     labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
     steps = []
     for k, label in enumerate(labels):
@@ -80,6 +83,13 @@ def steps_of(
             )
         )
     return tuple(steps)
+
+
+def base_labels(base: Calibration) -> list[str]:
+    """What the base model holds: an effect by its id, several of one name by that name alone."""
+    effects = base.model.effects
+    count = Counter(effect.name for effect in effects)
+    return list(dict.fromkeys(e.id if count[e.name] == 1 else e.name for e in effects))
 
 
 def _whole(linear: Linear, seen: Calibration) -> Mask:

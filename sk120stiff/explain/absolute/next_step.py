@@ -43,8 +43,8 @@ def next_step_of_positions(answer: Explained) -> str:
     unit, whole = answer.final.problem.unit, answer.final.problem.rms_unit
     use = f"Use model.yaml: at poses that no fit saw it is off by {last:.4g} {whole}"
     if last < first:
-        rigid = "a rigid arm" if answer.displaced else "the registered arm alone"
-        use += f" where {rigid} is off by {first:.4g} {unit}"
+        before = answer.steps[0].label if answer.displaced else "the registered arm"
+        use += f" where {before} alone is off by {first:.4g} {unit}"
     said = [f"{use}."]
     if answer.displaced and answer.budget:
         most = answer.budget[0]

@@ -29,12 +29,10 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     """Gap step by step, named causes with their values, what cannot be told, what is left."""
     first, end = answer.steps[0], answer.steps[-1]
     unit, away = answer.final.problem.unit, end.heldout_distance
-    size = _size(answer)
+    size, before = _size(answer), first.label if answer.displaced else "registered"
     figures = KeyFigures(
         [
-            KeyFigure(
-                "rigid" if answer.displaced else "registered", um(first.heldout_rms), unit, size
-            ),
+            KeyFigure(before, um(first.heldout_rms), unit, size),
             KeyFigure("explained", um(end.heldout_rms), unit, "at poses left out"),
             *(
                 [KeyFigure("mean distance", um(away), "µm", "left out")]
