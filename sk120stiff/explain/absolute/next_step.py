@@ -46,13 +46,14 @@ def next_step_of_positions(answer: Explained) -> str:
         before = answer.steps[0].label if answer.displaced else "the registered arm"
         use += f" where {before} alone is off by {first:.4g} {unit}"
     said = [f"{use}."]
-    if answer.displaced and answer.budget:
-        most = answer.budget[0]
+    named = {item.effect.id for item in answer.findings}
+    most = next((share for share in answer.budget if share.name in named), None)
+    if answer.displaced and most is not None:
         said.append(
-            f"{most.name} moves the point most, {1e6 * most.rms:.4g} µm rms per axis: look there "
-            "first if the arm is to be mended."
+            f"Of what was named {most.name} moves the point most, {1e6 * most.rms:.4g} µm rms per "
+            "axis: look there first if the arm is to be mended."
         )
-    elif answer.families:
+    elif answer.families and not answer.displaced:
         largest = max(answer.families, key=lambda name: answer.families[name])
         share = f"{1e6 * answer.families[largest]:.4g} {unit}"
         said.append(
