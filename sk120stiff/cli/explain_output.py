@@ -14,6 +14,7 @@ from sk120stiff.cli.outputs import refuse_foreign, will_write_into, write_pages
 from sk120stiff.cli.positions import yielding
 from sk120stiff.cli.shares import budget_tables
 from sk120stiff.cli.tables import table
+from sk120stiff.cli.values import value_lines
 from sk120stiff.explain import Explained, Explanation
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
@@ -30,7 +31,7 @@ from sk120stiff.explain.findings import Contender, Finding, likely
 from sk120stiff.identify import unseen_reasons, unseen_sentences
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
-from sk120stiff.show.wording import um, with_error
+from sk120stiff.show.wording import um
 
 STRONG = 6  # difference of scores
 MANY = 12  # parameters of one effect beyond which only the largest is printed
@@ -190,12 +191,7 @@ def findings(answer: Explanation) -> list[str]:
             largest = max(own, key=lambda p: abs(p.value))
             lines.append(f"  {len(own)} values, the largest:")
             own = [largest]
-        for p in own:
-            hidden = p.name in unseen
-            value = "cannot be seen" if hidden else with_error(p.value, p.std, p.spec.unit)
-            if p.value == 0.0 and p.spec.lower == 0.0 and not p.std and not hidden:
-                value = "none found"
-            lines.append(f"  {p.spec.name} {value} ({p.spec.meaning})")
+        lines += value_lines(own, unseen)
         whole = whole_size(answer, finding)
         if whole is not None:
             lines.append(f"  {whole.sentence}")

@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.cli.tables import table
+from sk120stiff.cli.values import value_lines
 from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explained
@@ -17,10 +18,11 @@ from sk120stiff.explain.absolute.accounts import HeldOutFile
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.absolute.words import findings
+from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.model import Model, base_model
 
 LISTED = 6  # rows of a held-out file that are told one by one
+FEW = 4  # parameters of one effect that are printed; those of a joint's frame stand in the report
 
 
 def positions_answer(answer: Explained, document: Mapping[str, object], out: Path) -> Answer:
@@ -64,12 +66,15 @@ def yielding(model: Model) -> Model:
 
 def _parts(answer: Explained, out: Path) -> list[object]:
     shown: list[object] = [headline(answer)]
+    hidden = unseen(answer.final)
     for item in answer.findings:
         shown.append(
             f"{item.effect.sentence()} [{item.effect.id}] ({answer.chance_of(item)}, takes off "
             f"{100 * item.gain.share:.1f} %)"
         )
-        shown += [f"  or {other} (not told apart here)" for other in item.alternatives]
+        shown += [f"  or {other} ({item.kind_of(other)})" for other in item.alternatives]
+        own = [p for p in answer.final.model.parameters if p.effect == item.effect]
+        shown += value_lines(own, hidden) if len(own) <= FEW else []
     whole = np.isfinite(answer.steps[-1].heldout_distance)
     rows = [
         (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)[: 3 + whole]

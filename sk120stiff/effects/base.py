@@ -361,7 +361,13 @@ class Misreading(Effect):
 
 
 class LoadError(Misreading):
-    """The load differs from what was reported; x is the wrench (6) in sensor axes [N, N·m]."""
+    """The load differs from what was reported; x is the wrench (6) in sensor axes [N, N·m].
+
+    Attributes:
+        of_payload: Masses that are hung on the tool have it, too (class attribute).
+    """
+
+    of_payload: ClassVar[bool] = False
 
 
 class ReadingError(Misreading):

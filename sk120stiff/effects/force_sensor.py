@@ -207,19 +207,32 @@ class ForceCrosstalk(_SensorError):
 
 @dataclass(frozen=True)
 class ForcePoint(_SensorError):
-    """The load acts at another point of the tool than stated: M_true = M + o × F."""
+    """The load acts at another point of the tool than stated: M_true = M + o × F.
 
+    Attributes:
+        hung: It is a mass, of which people hardly know where its centre lies; a cable or a cylinder
+            pulls where it is hooked.
+    """
+
+    hung: bool = False
     name: ClassVar[str] = "force_point"
     calibrated: ClassVar[bool] = False  # a place that was measured, no reading of the sensor
+    of_payload: ClassVar[bool] = True
     equation: ClassVar[str] = "M_true = M_reported + o x F"
     says: ClassVar[str] = "The load acts at another point of the tool than stated."
     axes: ClassVar[str] = "axes of the tool frame"
 
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The place of a mass, or of whatever else pulls."""
+        return cls(where, scale_of(robot), options.hung)
+
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True place minus stated place."""
+        plausible, typical = (0.5, 0.02) if self.hung else (0.1, 5e-3)
         return of_axes(
-            "offset_{}", "m", plausible=0.1 * self.scale, typical=5e-3 * self.scale,
+            "offset_{}", "m", plausible=plausible * self.scale, typical=typical * self.scale,
             meaning="true minus stated place of the load along {} of the tool frame",
         )  # fmt: skip
 

@@ -17,6 +17,7 @@ class Options:
         stations: Where the instrument stood, for `tracker_frame`; one without a label is "".
         thermal: The experiment has temperatures, for `thermal_growth`.
         rotations: Rotations of the tool were read, for `target_rotation`.
+        hung: The loads are masses on the tool, for `force_point`.
         shape: Names of the parameters of the law that is meant, for effects that know more than
             one.
     """
@@ -28,4 +29,5 @@ class Options:
     stations: tuple[str, ...] = ("",)
     thermal: bool = False
     rotations: bool = False
+    hung: bool = False
     shape: tuple[str, ...] = ()

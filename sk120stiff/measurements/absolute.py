@@ -50,6 +50,7 @@ class Absolute:
         markers: N names of markers.
         payload, payload_point, fit_payload: (N,) mass [kg] on the tool, (3,) where it hangs in the
             tool frame [m], and whether mass and centre are in doubt.
+        payload_placed: The file says where it hangs; else it is taken to at the tool's origin.
         temperature: (N,) [degC], or None.
         series: N labels of what may have changed in between, or None.
         stations: N labels of where the instrument stood, or None.
@@ -63,6 +64,7 @@ class Absolute:
     payload: Array
     payload_point: Array = field(default_factory=lambda: np.zeros(3))
     fit_payload: bool = False
+    payload_placed: bool = True
     temperature: Array | None = None
     series: tuple[str, ...] | None = None
     fit_axes: bool = False
@@ -84,6 +86,11 @@ class Absolute:
             series=cut(self.series),
             stations=cut(self.stations),
         )
+
+    @property
+    def payload_differs(self) -> bool:
+        """More than one mass: that they hang elsewhere is no moment that stays the same."""
+        return len(set(self.payload)) > 1
 
     @property
     def groups(self) -> tuple[str, ...] | None:
@@ -153,6 +160,7 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
     if "payload" in roles.has:
         payload = _payload(table)
     hung = np.zeros(3)
+    placed = settings.payload is not None and settings.payload.point is not None
     if settings.payload is not None and settings.payload.point is not None:
         hung = np.array(settings.payload.point.in_metres(file.place("payload.point.unit")))
     return Absolute(
@@ -164,6 +172,7 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
         payload=payload,
         payload_point=hung,
         fit_payload=settings.payload is not None and settings.payload.fit,
+        payload_placed=placed,
         temperature=_temperature(table) if "temperature" in roles.has else None,
         series=table.cells["series"] if "series" in roles.has else None,
         stations=table.cells["station"] if "station" in roles.has else None,

@@ -101,9 +101,11 @@ def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[
         settings["points"] = {n: {**_point(at, length), **fit} for n, at in places.items()}
     else:
         settings["point"] = {**_point(said.point[0], length), **fit}
-    settings["payload"] = {"point": _point(said.payload_point, length)}
-    if said.fit_payload:
-        settings["payload"]["fit"] = True
+    hung: dict[str, Any] = (
+        {"point": _point(said.payload_point, length)} if said.payload_placed else {}
+    )
+    hung |= {"fit": True} if said.fit_payload else {}
+    settings |= {"payload": hung} if hung else {}
     if m.wrench.any():
         settings["force"] = {"frame": m.force_frame}
         if not np.array_equal(m.force_point, m.point):

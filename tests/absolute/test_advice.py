@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.explain.absolute.advice import next_poses, open_pair
 from sk120stiff.explain.absolute.choose import choose
 from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.other_poses import elsewhere, never_told, next_poses
 from sk120stiff.explain.absolute.run import explain_positions
+from sk120stiff.explain.options import Options
 from sk120stiff.model import Model
 from sk120stiff.plan import Cell, feasible
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
@@ -23,9 +25,11 @@ FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\
 NOISE = "noise: {sigma: 20, unit: um}\n"
 
 
-def explained(tmp_path: Path, a: Array, x: Array, settings: str = FIT + NOISE) -> Explained:
+def explained(
+    tmp_path: Path, a: Array, x: Array, settings: str = FIT + NOISE, **columns: Any
+) -> Explained:
     noise = SIGMA * np.random.default_rng(7).normal(size=x.shape)
-    data = sk.read(write(tmp_path, a, tracked(x) + noise, settings))
+    data = sk.read(write(tmp_path, a, tracked(x) + noise, settings, **columns))
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     return explain_positions(Model(robot), data.with_joints(robot.actuated))
 
@@ -60,6 +64,39 @@ def test_sizes_told_as_detectable_bring_a_name_and_smaller_ones_do_not(tmp_path:
     assert tried[0.4][0] <= 0.15 * count
 
 
+def _place(found: Explained, name: str) -> int:
+    return [effect.id for effect in found.linear.candidates].index(name)
+
+
+def test_a_spring_and_the_torsion_of_a_link_along_its_axis_are_one(tmp_path: Path) -> None:
+    """No pose tells them apart: the name is settled, says so, and asks for no readings."""
+    a = poses(60, 4)
+    arm = _with([0.05, -0.4, 0.12], (60.0, np.array([0.0, 0.4, 0.1])))
+    arm.compliance = np.array([0, 1 / 6e5, 0, 0, 0, 1 / 5e5])
+    arm.shift, arm.turn = np.zeros((6, 3)), np.zeros((6, 3))
+    settings = FIT + NOISE + "payload: {point: {xyz: [0, 400, 100], unit: mm}}\n"
+    found = explained(
+        tmp_path, a, arm.stands(a)[0], settings, more=",payload[kg]", cells=["60"] * len(a)
+    )
+    told = {item.effect.id: item for item in found.findings}
+    assert found.verdict == "named" and set(told) == {"joint_springs:j2", "joint_springs:j6"}
+    item = told["joint_springs:j6"]
+    assert "link_torsion:l5" in item.exact and item.kind_of("link_torsion:l5") == "always the same"
+    assert item.settled and item.others == () and found.following is None
+    assert found.chance_of(item) == "P > 0.99"
+    effects = found.save(tmp_path / "out")["effects"]
+    assert effects[1]["exact_aliases"] == list(item.exact) == effects[1]["alternatives"]
+    assert "One in all such readings with: " in found.report().html()
+    spring, torsion, bending = (
+        found.linear.candidates[_place(found, name)]
+        for name in ("joint_springs:j6", "link_torsion:l5", "link_bending:l3")
+    )
+    there = elsewhere(found.final, Options())
+    assert there is not None
+    assert never_told(found.final, there, spring, [bending, torsion]) == ("link_torsion:l5",)
+    assert next_poses(found.final, there, [(spring, torsion)]) is None
+
+
 def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     """Joints 3 to 6 hardly move: the weight's torque on joint 2 goes with its angle alone."""
     arm = Arm(compliance=np.array([0, 1 / 6e5, 0, 0, 0, 0]))
@@ -74,8 +111,7 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     assert set(following.between) <= names and "joint_springs:j2" in names
     shares = [first.probabilities[name] for name in names if name in first.probabilities]
     assert sum(shares) <= 1.0 + 1e-6
-    pair = open_pair([(item.effect, item.alternatives) for item in first.findings], first.linear)
-    assert pair is not None
+    pair = [first.linear.candidates[_place(first, name)] for name in following.between]
     first.save(tmp_path / "out")
     back = sk.read(tmp_path / "out" / "next_poses.csv")  # the YAML file beside it says whose
     np.testing.assert_allclose(back.joints, following.readings.joints, atol=1e-12)
@@ -83,7 +119,9 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     assert back.absolute is not None and back.absolute.frame == "unknown"
     assert back.absolute.fit_point and "joint_springs:j2" in back.source
     robot, cell = first.final.model.robot, Cell(low=np.array([0.5, -1.0, 0.5]))
-    apart = next_poses(first.final, *pair, seed=0, cell=cell)
+    there = elsewhere(first.final, Options(cell=cell))
+    assert there is not None and never_told(first.final, there, pair[0], pair[1:]) == ()
+    apart = next_poses(first.final, there, [(pair[0], pair[1])])
     assert apart is not None and not feasible(robot, cell, following.readings.joints).ok.all()
     assert feasible(robot, cell, apart.readings.joints).ok.all()
     a = np.concatenate([a, following.readings.joints])

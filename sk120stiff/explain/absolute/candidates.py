@@ -59,12 +59,15 @@ def candidates_at(
     told = options_of(readings)
     loaded = bool(readings.wrench.any())
     said = readings.absolute
+    hung = said is not None and said.payload_differs
     went = said is not None and said.channels.displacements_alone
     out = []
     for kind in catalogue:
         if kind.name in _ONLY_LOADED or (kind.name == _BESIDE_FRAME and not went):
             continue
-        if issubclass(kind, LoadError) and not (loaded or kind.only_absolute):
+        if issubclass(kind, LoadError) and not (
+            loaded or kind.only_absolute or (kind.of_payload and hung)
+        ):
             continue
         if issubclass(kind, Elastic) and not issubclass(kind, _SHOWN_BY_WEIGHT):
             continue

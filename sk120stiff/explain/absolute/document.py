@@ -143,7 +143,7 @@ def _effect(
         "name": item.effect.name,
         "where": item.effect.where,
         "alternatives": list(item.alternatives),
-        "exact_aliases": [],
+        "exact_aliases": list(item.exact),
         "probability": min(item.probability, SURE),
         "share_um": micrometres(share) if len(problem.lengths) else None,
         "parameters": [entries[p.name] for p in own],

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from sk120stiff.effects import Effect
 from sk120stiff.explain.absolute.accounts import GapStep, HeldOutFile
-from sk120stiff.explain.absolute.advice import NextPoses
 from sk120stiff.explain.absolute.budget import budget_of
 from sk120stiff.explain.absolute.choose import Gain
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.absolute.other_poses import NextPoses
 from sk120stiff.explain.findings import Contender, Detectable, likely
 from sk120stiff.identify import Calibration
 from sk120stiff.identify.absolute.remainder import LEVEL, Size, remainder_sentences
@@ -29,17 +29,35 @@ SURE = 0.95  # probability of a name that is settled
 
 @dataclass(frozen=True)
 class Named:
-    """One named cause: the effect, what cannot be told from it, its probability and gain."""
+    """One named cause.
+
+    Attributes:
+        effect: The effect.
+        alternatives: What explains as much here.
+        exact: Those of the alternatives that explain as much at every pose.
+        probability: Of the effect or one of its alternatives.
+        gain: What it takes off at poses left out.
+    """
 
     effect: Effect
     alternatives: tuple[str, ...]
+    exact: tuple[str, ...]
     probability: float
     gain: Gain
 
     @property
+    def others(self) -> tuple[str, ...]:
+        """Alternatives that other poses could tell from it."""
+        return tuple(name for name in self.alternatives if name not in self.exact)
+
+    @property
     def settled(self) -> bool:
-        """Nothing else explains as much, and it is sure."""
-        return not self.alternatives and self.probability >= SURE
+        """One name, or one class of names, is sure enough; no further poses could tell more."""
+        return not self.others and self.probability >= SURE
+
+    def kind_of(self, other: str) -> str:
+        """Why one of the alternatives stands beside the name, in words."""
+        return "always the same" if other in self.exact else "not told apart here"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -126,7 +144,7 @@ class Explained:
 
     def chance_of(self, item: Named) -> str:
         """How probable a name is, and where others explain as much how probable one of them is."""
-        if not item.alternatives:
+        if not item.others:
             return likely(item.probability)
         own = likely(self.probabilities.get(item.effect.id, 0.0))
         return f"{own}; it or one of those not told from it: {likely(item.probability)}"

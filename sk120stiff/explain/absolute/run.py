@@ -18,12 +18,7 @@ from sk120stiff.explain.absolute.accounts import (
     steps_of,
     suspects_of,
 )
-from sk120stiff.explain.absolute.advice import (
-    detectable,
-    next_poses,
-    open_pair,
-    probabilities,
-)
+from sk120stiff.explain.absolute.advice import detectable, probabilities
 from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.choose import (
     Chosen,
@@ -36,6 +31,7 @@ from sk120stiff.explain.absolute.choose import (
 from sk120stiff.explain.absolute.explained import Explained, Named
 from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
 from sk120stiff.explain.absolute.linear import Linear, everything
+from sk120stiff.explain.absolute.other_poses import NextPoses, elsewhere, never_told, next_poses
 from sk120stiff.explain.absolute.remainder import where_it_lives
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options
@@ -128,12 +124,11 @@ def explain_positions(
     final = beside_laws(final, linear, found.order, laws)
     final = replace(final, notes=(*pushed, *final.notes, *pounds(final)))
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
-    named = tuple(_named(linear, found, e) for e in found.order)
+    named, following = _named(linear, found, final, options)
     gap = linear.gap(found.order, noise, held_out=True)
     chance = chance_of_noise(final)
     lacking = chance is not None and chance < LEVEL
     verdict = "outside" if lacking else "none"
-    pair = open_pair([(item.effect, item.alternatives) for item in named], linear)
     if named:
         verdict = "named" if all(item.settled for item in named) else "ambiguous"
     return Explained(
@@ -154,9 +149,7 @@ def explain_positions(
         where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
         probabilities=probabilities(linear, found),
-        following=None
-        if pair is None
-        else next_poses(final, *pair, seed=options.seed, cell=options.cell),
+        following=following,
         readings=readings,
         heldout=None if holdout is None else heldout_on(final, holdout.with_joints(*joints)),
     )
@@ -241,11 +234,19 @@ def _picked(linear: Linear, found: Chosen) -> list[Effect]:
     return [linear.candidates[e] for e in found.order]
 
 
-def _named(linear: Linear, found: Chosen, e: int) -> Named:
-    rivals, probability = alternatives(linear, found.order, e)
-    return Named(
-        linear.candidates[e],
-        tuple(linear.candidates[c].id for c in rivals),
-        probability,
-        gain(linear, found.order, e),
-    )
+def _named(
+    linear: Linear, found: Chosen, final: Calibration, options: Options
+) -> tuple[tuple[Named, ...], NextPoses | None]:
+    """Every name with what explains as much, and the poses that would tell them apart."""
+    candidates = linear.candidates
+    rivals = {e: alternatives(linear, found.order, e) for e in found.order}
+    there = elsewhere(final, options) if any(own for own, _ in rivals.values()) else None
+    named, pairs = [], []
+    for e, (own, probability) in rivals.items():
+        others = [candidates[c] for c in own]
+        exact = never_told(final, there, candidates[e], others) if there and others else ()
+        ids = tuple(other.id for other in others)
+        named.append(Named(candidates[e], ids, exact, probability, gain(linear, found.order, e)))
+        pairs += [(candidates[e], other) for other in others if other.id not in exact][:1]
+    following = None if there is None else next_poses(final, there, pairs)
+    return tuple(named), following

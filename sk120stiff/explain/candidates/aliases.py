@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Effect, LoadCases
 from sk120stiff.errors import Refusal
 from sk120stiff.model import Model
@@ -48,18 +48,34 @@ def exact_aliases(
     owner = np.array([parameter.effect.id for parameter in full.parameters])
     values = model.values[[p.effect.id == effect.id for p in model.parameters]]
     values = values / typical[owner == effect.id]
-    base = _directions(_unit(X[:, np.isin(owner, list(present - {effect.id}))]))
-    whole = X[:, owner == effect.id] @ values
+    beside = np.isin(owner, list(present - {effect.id}))
+    return imitators(X, owner, beside, effect.id, [other.id for other in others], values)
+
+
+def imitators(
+    X: Array, owner: Array, beside: Mask, name: str, others: Sequence[str], values: Array
+) -> tuple[str, ...]:
+    """Which effects can be in the place of one, whatever the rest of a model does beside them.
+
+    Args:
+        X: (R, P) derivative of readings by parameters in their typical sizes.
+        owner: (P,) whose parameter it is.
+        beside: (P,) the rest of the model.
+        name: Whose sign it is.
+        others: Which are looked at.
+        values: (p,) parameters of `name`, in their typical sizes.
+    """
+    base = _directions(_unit(X[:, beside]))
+    whole = X[:, owner == name] @ values
     signature = _without(base, whole)
     left = float(np.linalg.norm(signature))
     if left <= ROUNDING * float(np.linalg.norm(whole)):
         return ()  # it goes by order or pose, or the others have all of it: no sign of its own
-    same = SAME * left
     found = []
     for other in others:
-        own = _directions(_without(base, _unit(X[:, owner == other.id])))
-        if np.linalg.norm(_without(own, signature)) <= same:
-            found.append(other.id)
+        own = _directions(_without(base, _unit(X[:, owner == other])))
+        if np.linalg.norm(_without(own, signature)) <= SAME * left:
+            found.append(other)
     return tuple(found)
 
 

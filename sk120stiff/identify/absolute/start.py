@@ -26,6 +26,7 @@ def options_of(readings: Measurements) -> Options:
         stations=("",) if said is None else said.stood[0],
         thermal=said is not None and said.temperature is not None,
         rotations=said is not None and said.channels.rotation is not None,
+        hung=said is not None and bool(said.payload.any()) and not readings.wrench.any(),
     )
 
 
@@ -82,6 +83,8 @@ def started(
         model = joined(model, "target_rotation", robot.tool_frame, mounted.ravel())
     if said.fit_payload:
         model = joined(model, "payload", robot.tool_frame)
+        if said.payload_differs:
+            model = joined(model, "force_point", "sensor")
     if geometry:
         for where in catalogue["joint_frame"].places(robot):
             model = joined(model, "joint_frame", where)

@@ -110,7 +110,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     if found.placed is not None:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))
-    said += _payload(found, readings) + _implausible(found)
+    said += _hung(found, readings) + _payload(found, readings) + _implausible(found)
     if found.waves:
         said.append(
             f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
@@ -167,6 +167,21 @@ def _implausible(found: Calibration) -> list[str]:
     return [
         f"More than is plausible: {listed(told)}. The zero of a joint is elsewhere, another cause "
         "hides behind it, or the fit found no better way: make sure before you use this model."
+    ]
+
+
+def _hung(found: Calibration, readings: Measurements) -> list[str]:
+    """That nobody said where the payload hangs, though springs rest on it."""
+    said = readings.absolute
+    if said is None or said.payload_placed or not said.payload.any():
+        return []
+    fitted = {"payload", "force_point"} & {effect.name for effect in found.model.effects}
+    if fitted or not any(isinstance(effect, Elastic) for effect in found.model.effects):
+        return []
+    return [
+        "Where the payload hangs is not stated: it is taken to be the origin of "
+        f"{found.model.robot.tool_frame}, and springs rest on that. Write the centre of its mass "
+        "as payload.point into the YAML file, or payload: {fit: true}."
     ]
 
 
