@@ -61,8 +61,7 @@ class Effect(ABC):
         random_effects: The parameters are draws of one size (class attribute).
         bends_a_spring: It changes the spring of the joint at which it acts, so there must be one
             (class attribute).
-        inexact: Share of what it explains by which real parts depart from its law (class
-            attribute).
+        inexact: Share of what it explains by which real parts depart from it (class attribute).
         joint_spring: Its one parameter is the stiffness of the actuated joint at which it acts
             (class attribute).
         rare: Few arms have what does it (class attribute).
@@ -361,13 +360,9 @@ class Misreading(Effect):
 
 
 class LoadError(Misreading):
-    """The load differs from what was reported; x is the wrench (6) in sensor axes [N, N·m].
+    """The load differs from what was reported; x is the wrench (6) in sensor axes [N, N·m]."""
 
-    Attributes:
-        of_payload: Masses that are hung on the tool have it, too (class attribute).
-    """
-
-    of_payload: ClassVar[bool] = False
+    of_payload: ClassVar[bool] = False  # masses that are hung on the tool have it, too
 
 
 class ReadingError(Misreading):

@@ -34,7 +34,7 @@ INFRASTRUCTURE = {
     "__init__", "calibration", "cell", "compensate_path", "compensate_files",
     "compensate_words", "environment", "explain_output", "frame",
     "identify_rows", "import_preview", "main", "opening", "options",
-    "outputs", "positions", "shares", "signature", "tables", "task_budget", "uncertainty",
+    "outputs", "positions", "shares", "signature", "tables", "task_budget", "uncertainty", "values",
     "xacro_option",
 }  # fmt: skip
 

@@ -12,7 +12,6 @@ from sk120stiff.explain.findings import Detectable
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED = 2.0 * (SURE + 0.84)
 LEAST = 0.01  # probability below which nobody is told
-POOL, COUNT = 200, 8  # poses to choose from, and chosen
 
 
 def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
