@@ -121,4 +121,29 @@ OF_POSITIONS: tuple[Fault, ...] = (
         frames_for_few_positions=("if left[way] <= AS_WELL * best), (", "if left[way] <= 0.0), ("),
         a_marker_always_where_it_was=("ways += [(\"series\",), (\"station\", \"series\")]", "ways += []"),
     ),
+    *of(
+        "identify/absolute/hanging.py", *tests("absolute", "hanging"),
+        a_balancer_taken_for_a_ceiling=("if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):", "if odds < BEYOND_DOUBT:"),
+        springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
+        gravity_along_one_axis_alone=("parts = [columns(wide.under(size * axis))", "parts = [columns(wide.under(size * np.eye(3)[2]))"),
+        waves_taken_for_sag=("for kind in (JointFrame, TransmissionError) for", "for kind in (JointFrame,) for"),
+        what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
+    ),
+    *of(
+        "explain/absolute/other_poses.py", *tests("absolute", "advice"),
+        poses_that_tell_nothing_proposed=("if found.after >= TOLD:", "if found.after >= 0.0:"),
+    ),
+    *of(
+        "explain/absolute/candidates.py", *tests("absolute", "payload_place"),
+        payloads_that_hang_where_the_file_says=("(kind.of_payload and hung)", "(kind.of_payload and loaded)"),
+        one_mass_that_hangs_elsewhere_twice=("hung = said is not None and said.payload_differs", "hung = said is not None"),
+    ),
+    *of(
+        "effects/force_sensor.py", *tests("absolute", "payload_place"),
+        a_mass_as_well_placed_as_a_hook=("plausible, typical = (0.5, 0.02) if self.hung", "plausible, typical = (0.1, 5e-3) if self.hung"),
+    ),
+    *of(
+        "explain/absolute/explained.py", *tests("absolute", "advice"),
+        one_of_a_class_left_open=("return not self.others and self.probability >= SURE", "return not self.alternatives and self.probability >= SURE"),
+    ),
 )  # fmt: skip

@@ -37,6 +37,7 @@ class Arm:
     hardens: Array = field(default_factory=lambda: np.zeros(6))  # rad/(N·m)²
     weighs: bool = True
     payload: float = 0.0  # kg, at the tool's origin
+    up: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # against gravity, base
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
         """Marker (N, 3), tool axes (N, 3, 3) and potential energy (N,) at true joint values."""
@@ -45,9 +46,9 @@ class Arm:
             p = p + R.apply(ORIGINS[k] + self.shift[k])
             R = R * Rotation.from_rotvec(self.turn[k])
             R = R * Rotation.from_rotvec(AXES[k] * q[:, k, None])
-            energy += MASSES[k] * G * (p + R.apply(CENTRES[k]))[:, 2]
+            energy += MASSES[k] * G * (p + R.apply(CENTRES[k])) @ self.up
         p = p + R.apply(TOOL)
-        energy += self.payload * G * p[:, 2]
+        energy += self.payload * G * p @ self.up
         return p + R.apply(self.marker), R.as_matrix(), energy
 
     def stands(self, a: Array) -> tuple[Array, Array]:

@@ -146,7 +146,8 @@ class Explained:
         """How probable a name is, and where others explain as much how probable one of them is."""
         if not item.others:
             return likely(item.probability)
-        own = likely(self.probabilities.get(item.effect.id, 0.0))
+        same = (item.effect.id, *item.exact)
+        own = likely(sum(self.probabilities.get(name, 0.0) for name in same))
         return f"{own}; it or one of those not told from it: {likely(item.probability)}"
 
     def weight(self) -> tuple[str, ...]:

@@ -1,0 +1,167 @@
+"""An arm that hangs from a ceiling or a wall while its file says that it stands on a floor.
+
+Sag is linear in the springs' compliances and in the components of gravity. Both are fitted in
+turn, from every axis of the base on, beside errors of all joint frames and waves over all joints'
+angles, and no spring pushes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import nnls
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Elastic
+from sk120stiff.effects.joint_frame import JointFrame
+from sk120stiff.effects.joint_springs import JointSprings
+from sk120stiff.effects.transmission_error import TransmissionError
+from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+
+HALF = 0.5  # of the square of what is left, below which another direction must bring it
+BEYOND_DOUBT = 10.0  # logarithm of the odds for it
+AS_WELL = 1.25  # times the square that springs of either sign leave as gravity is stated
+FAR = np.radians(10.0)  # rad between two directions, below which the base is no more than unlevel
+ROUNDS = 30  # of fitting springs and direction in turn
+NEAR_AXIS = 0.02  # components below which a direction is that of an axis
+
+
+def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[str, ...]:
+    """Stop where the arm sags to another side than its file says.
+
+    Where the file states gravity itself, a sentence tells what the sag looks like.
+
+    Raises:
+        InputError: It does, beyond doubt.
+    """
+    robot = found.model.robot
+    size = float(np.linalg.norm(robot.gravity_in_base))
+    if size == 0.0 or found.problem.channels.displacements_alone:
+        return ()
+    sag = _Sag.of(found)
+    if sag.freedom <= 0:
+        return ()
+    stated = robot.gravity_in_base / size
+    best = sag.best()
+    before, after = sag.left(stated), sag.left(best)
+    odds = 0.5 * sag.freedom * np.log(before / max(after, 1e-300))
+    if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):
+        return ()
+    off = float(np.arccos(np.clip(best @ stated, -1.0, 1.0)))
+    share = f"{100.0 * float(np.sqrt(after / before)):.2g} %"
+    if off < FAR:
+        return (
+            f"The arm sags as if its base stood {np.degrees(off):.2g} deg off level: with "
+            f"{_told(best, size)} springs leave {share} of the gap that they leave as it is "
+            "stated. Level the base, or write that into the YAML file.",
+        )
+    if after > HALF * before:
+        return ()
+    if len(near := np.flatnonzero(np.abs(best) > 1.0 - NEAR_AXIS)):
+        best = np.sign(best) * (np.arange(3) == near[0])
+    looks = (
+        f"the arm sags as if gravity were {_listed(best, size)} in axes of the base: with that "
+        f"springs leave {share} of the gap that they leave as it is stated"
+    )
+    if readings.gravity is not None:
+        return (f"{looks[0].upper()}{looks[1:]}.",)
+    raise InputError(
+        looks,
+        where=str(readings.path or "measurements"),
+        remedy=f"Hangs it from a wall or a ceiling? Write {_told(best, size)} into the YAML file; "
+        f"or {_told(stated, size)}, if that is right.",
+    )
+
+
+def _told(way: Array, size: float) -> str:
+    return f"gravity: {_listed(way, size)}"
+
+
+def _listed(way: Array, size: float) -> str:
+    """Gravity as it is written into a file [m/s²]."""
+    return f"[{', '.join(f'{round(float(v), 2) + 0.0:.3g}' for v in size * way)}]"
+
+
+@dataclass(frozen=True, eq=False)
+class _Sag:
+    """What springs make of gravity, beside the errors of all joint frames.
+
+    Attributes:
+        by_axis: (3, r, n) readings per compliance and per unit of gravity along an axis.
+        gap: (r,) what is to be explained.
+        freedom: Numbers beyond those of frames and springs.
+    """
+
+    by_axis: Array
+    gap: Array
+    freedom: int
+
+    @classmethod
+    def of(cls, found: Calibration) -> _Sag:
+        """About the rigid arm where a calibration has placed it."""
+        problem = found.problem
+        model = found.model
+        for effect in model.effects:
+            if isinstance(effect, Elastic):
+                model = model.without(effect.id)
+        robot, white = model.robot, problem.of_channels.apply
+        size = float(np.linalg.norm(robot.gravity_in_base))
+        present = {effect.id for effect in model.effects}
+        beside = [
+            kind(where) for kind in (JointFrame, TransmissionError) for where in kind.places(robot)
+        ]
+        springs = [JointSprings(where) for where in JointSprings.places(robot)]
+        wide = model
+        for effect in (*(each for each in beside if each.id not in present), *springs):
+            wide = wide + effect
+        own = np.array([isinstance(p.effect, JointSprings) for p in wide.parameters])
+
+        def columns(model: Model) -> tuple[Array, Array]:
+            gap, slope = replace(problem, model=model).channel_gap(model.values, derivative=True)
+            return np.asarray(white(gap)), np.asarray(white(slope))
+
+        gap, slope = columns(wide)
+        Q = np.asarray(np.linalg.qr(slope[:, ~own])[0])
+        parts = [columns(wide.under(size * axis))[1][:, own] for axis in np.eye(3)]
+        whole = np.column_stack([*parts, gap])
+        for _ in range(2):
+            whole = whole - Q @ (Q.T @ whole)
+        R = np.asarray(np.linalg.qr(whole)[1])
+        n = int(own.sum())
+        by_axis = np.array([R[:, k * n : (k + 1) * n] for k in range(3)])
+        return cls(by_axis, R[:, -1], len(gap) - Q.shape[1] - n)
+
+    def best(self) -> Array:
+        """(3,) unit vector along which gravity explains most."""
+        ways = [self._settled(way) for way in (*np.eye(3), *-np.eye(3))]
+        return min(ways, key=self.left)
+
+    def left(self, way: Array) -> float:
+        """Square of what springs leave where gravity points along a unit vector (3,)."""
+        return float(nnls(self._along(way), self.gap)[1] ** 2)
+
+    def signed(self, way: Array) -> float:
+        """The same where springs may push: a balancer that lifts too much looks like one."""
+        A = self._along(way)
+        left = self.gap - A @ np.linalg.lstsq(A, self.gap, rcond=None)[0]
+        return float(left @ left)
+
+    def _along(self, way: Array) -> Array:
+        return np.asarray(np.einsum("k,krn->rn", way, self.by_axis))
+
+    def _settled(self, way: Array) -> Array:
+        """The direction to which springs and gravity, fitted in turn, come from another."""
+        for _ in range(ROUNDS):
+            c = nnls(self._along(way), self.gap)[0]
+            sides = self.by_axis @ c
+            if not sides.any():
+                return way
+            found = np.linalg.lstsq(sides.T, self.gap, rcond=None)[0]
+            if not found.any():
+                return way
+            way = found / np.linalg.norm(found)
+        return way

@@ -1,0 +1,140 @@
+"""An arm that hangs from a wall or a ceiling, and whose file does not say so."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import sk120stiff as sk
+from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute import hanging
+from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
+from sk120stiff.identify.absolute.hanging import refuse_another_gravity
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+from tests.absolute.arm import Array, errors, poses, tracked, write
+
+FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
+UP = {"ceiling": [0.0, 0.0, -1.0], "wall": [-1.0, 0.0, 0.0], "slope": [0.6, 0.0, 0.8]}
+BALANCED = np.array([1.0, -1.5, 1.0, 1.0, 1.0, 1.0])  # joint 2 is lifted by more than it bears
+
+
+def read(
+    folder: Path, up: list[float], more: str = "", *, count: int = 60, waves: float = 0.0,
+    yields: Array | None = None,
+) -> tuple[sk.Robot, Measurements]:  # fmt: skip
+    """Positions of an arm whose joint frames are all off and that hangs somehow."""
+    rng = np.random.default_rng(7)
+    arm = errors(3)
+    arm.up, arm.waves = np.array(up), waves * rng.normal(size=(6, 2))
+    arm.compliance = arm.compliance * (1.0 if yields is None else yields)
+    a = poses(count, 11)
+    x = tracked(arm.stands(a)[0]) + 2e-5 * rng.normal(size=(count, 3))
+    data = sk.read(write(folder, a, x, FIT + more))
+    return sk.load_robot(data.robot, base="base", tool="tool"), data
+
+
+def told(robot: sk.Robot, data: Measurements) -> tuple[str, ...]:
+    data = data.with_joints(robot.actuated)
+    base = calibrate(Model(robot), data, geometry=False, waves=False, shared=False)
+    return refuse_another_gravity(base, data)
+
+
+@pytest.mark.parametrize(
+    ("how", "says"),
+    [
+        ("ceiling", r"gravity: \[0, 0, 9.81\]"),
+        ("wall", r"gravity: \[9.81, 0, 0\]"),
+        ("slope", r"gravity: \[-5.\d*, -?0.0\d*, -7.\d*\]"),
+    ],
+)
+def test_the_direction_is_told_with_what_to_write(tmp_path: Path, how: str, says: str) -> None:
+    robot, data = read(tmp_path, UP[how], waves=2e-4)
+    with pytest.raises(InputError, match=says) as error:
+        told(robot, data)
+    assert "gravity: [0, 0, -9.81], if that is right" in error.value.remedy
+
+
+def test_a_base_that_is_not_level_is_told_and_stops_nothing(tmp_path: Path) -> None:
+    tilt = np.radians(3.0)
+    robot, data = read(tmp_path, [0.0, np.sin(tilt), np.cos(tilt)], count=120)
+    (line,) = told(robot, data)
+    found = re.match(r"The arm sags as if its base stood (\S+) deg off level", line)
+    assert found is not None and abs(float(found[1]) - 3.0) < 0.5
+    assert re.search(r"gravity: \[-?0[.\d]*, -0\.[45]\d?, -9\.\d+\]", line), line
+    robot, data = read(
+        tmp_path,
+        [0.0, np.sin(tilt), np.cos(tilt)],
+        f"gravity: [0, {-9.81 * np.sin(tilt)}, {-9.81 * np.cos(tilt)}]\n",
+        count=120,
+    )
+    assert told(robot.under(data.gravity), data) == ()
+
+
+@pytest.mark.parametrize("verb", [sk.fit, sk.explain])
+def test_both_verbs_stop(tmp_path: Path, verb: object) -> None:
+    robot, data = read(tmp_path, UP["ceiling"])
+    model = sk.base_model(robot) if verb is sk.fit else Model(robot)
+    with pytest.raises(InputError, match="as if gravity were"):
+        verb(model, data)  # type: ignore[operator]
+
+
+def test_what_the_file_states_is_told_and_kept(tmp_path: Path) -> None:
+    robot, data = read(tmp_path, UP["ceiling"], "gravity: [0, 0, -9.80665]\n")
+    (line,) = told(robot, data)
+    assert line.startswith("The arm sags as if gravity were [0, 0, 9.81]")
+    found = sk.fit(sk.base_model(robot), data)
+    assert isinstance(found, Calibration) and line[:40] in " ".join(found.notes)
+
+
+@pytest.mark.parametrize("more", ["gravity: [0, 0, 9.80665]\n"])
+def test_a_ceiling_that_is_stated_is_well(tmp_path: Path, more: str) -> None:
+    robot, data = read(tmp_path, UP["ceiling"], more)
+    assert told(robot.under(data.gravity), data) == ()
+    found = sk.fit(sk.base_model(robot), data)
+    assert isinstance(found, Calibration)
+    values = np.array([p.internal for p in found.parameters if p.effect.joint_spring])
+    std = np.array([p.internal_std for p in found.parameters if p.effect.joint_spring])
+    true = errors(3).compliance
+    seen = std > 0.0
+    assert np.all(np.abs(values - true)[seen] < 4.0 * std[seen]) and seen.sum() >= 4
+
+
+@pytest.mark.parametrize(
+    ("waves", "yields"),
+    [(0.0, None), (3e-4, None), (2e-4, np.zeros(6)), (0.0, BALANCED), (2e-4, BALANCED)],
+)
+@pytest.mark.parametrize("count", [25, 60, 120])
+def test_nothing_else_looks_like_it(
+    tmp_path: Path, waves: float, yields: Array | None, count: int
+) -> None:
+    """Springs, waves that springs would stand for, and a balancer that lifts too much."""
+    floor = [0.0, 0.0, 1.0]
+    assert told(*read(tmp_path, floor, count=count, waves=waves, yields=yields)) == ()
+
+
+@pytest.mark.parametrize("other", [0.0, 0.5])
+def test_a_balancer_that_nothing_else_tells_from_a_ceiling(
+    monkeypatch: pytest.MonkeyPatch, other: float
+) -> None:
+    """One spring pushes, another pulls: that springs of either sign explain more is what counts."""
+    by_axis = np.zeros((3, 60, 2))
+    by_axis[2] = np.random.default_rng(5).normal(size=(60, 2))
+    gap = by_axis[2] @ [3.0, -other] + 1e-3 * np.ones(60)
+    sag = hanging._Sag(by_axis, gap, 58)
+    monkeypatch.setattr(hanging._Sag, "of", classmethod(lambda _cls, _found: sag))
+    robot = SimpleNamespace(gravity_in_base=np.array([0.0, 0.0, -9.81]))
+    problem = SimpleNamespace(channels=SimpleNamespace(displacements_alone=False))
+    found = SimpleNamespace(model=SimpleNamespace(robot=robot), problem=problem)
+    readings = SimpleNamespace(gravity=np.array([0.0, 0.0, -9.81]))
+    assert bool(refuse_another_gravity(found, readings)) == (other == 0.0)  # type: ignore[arg-type]
+
+
+def test_an_arm_without_masses_or_gravity_says_nothing(tmp_path: Path) -> None:
+    robot, data = read(tmp_path, UP["ceiling"], "massless")
+    assert told(robot, data) == ()
+    assert told(robot.under(np.zeros(3)), data) == ()
