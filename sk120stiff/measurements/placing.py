@@ -16,6 +16,7 @@ from sk120stiff.measurements.placing_slips import (
     OtherConvention,
     markers,
     moved_at,
+    one_zero,
     shifted_at,
     signs_and_turns,
     slips,
@@ -226,14 +227,19 @@ def _refuse_slips(
         )
     least = min(BETTER * base, FITS * spread)
     _refuse_moved(cloud, told, least, readings, rows)
-    ways = (signs_and_turns, "zeros or signs"), (with_sums, "zeros, signs or sums")
+    ways = [
+        (signs_and_turns, "other zeros or signs of joints"),
+        (with_sums, "other zeros, signs or sums of joints"),
+    ]
+    if found.rms > FITS * spread:  # what is less a fit finds, and says of it that it is an error
+        ways.insert(0, (one_zero, "the zero of one joint elsewhere"))
     for found_by, what in ways:
         way = found_by(cloud.some(FEWER))
         mapping = way.changed(readings.joint_names)
         if mapping and way.rms < least:
             said = ", ".join(f"{name}: {expression}" for name, expression in mapping.items())
             raise OtherConvention(
-                f"{told}. With other {what} of joints {1e3 * way.rms:.3g} mm are left",
+                f"{told}. With {what} {1e3 * way.rms:.3g} mm are left",
                 where=where,
                 remedy="Check the controller's convention. If it is so, write into the YAML file: "
                 f"joints: {{{said}}}; where a joint has an expression there already, put that "

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations, permutations
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
@@ -21,6 +22,9 @@ WHOLE = 2  # joints of whose ways all are kept, since the wrist tells little of 
 KEPT = 32  # of the ways of the joints so far that are followed
 SLACK = 0.02  # rad or m; a joint may go so far beyond what its URDF states
 NEARLY = 1e-3  # of what is left, by which a marker may still move where ways are compared
+ZEROS = np.linspace(-np.pi, np.pi, 72, endpoint=False)  # rad; zeros of a joint tried first
+SAGGED = np.radians(0.25)  # rad from a quarter turn that sag makes of one
+FINE = 1e-5  # rad, to which one is found
 TIMES = (1.0, -1.0, 2.0, -2.0)  # another joint's share in a sum, and in one of the wrong sign
 
 
@@ -183,7 +187,8 @@ class Convention:
         out = []
         for own, zero in zip(self.share, self.zero, strict=True):
             degrees = (np.degrees(zero) + 180.0) % 360.0 - 180.0
-            constant = f" {'-' if degrees < 0 else '+'} {abs(degrees):.0f} deg" if degrees else ""
+            shown = f"{round(abs(degrees), 2):g}"
+            constant = f" {'-' if degrees < 0 else '+'} {shown} deg" if float(shown) else ""
             out.append(_expression(own, columns) + constant)
         return out
 
@@ -218,6 +223,31 @@ def signs_and_turns(cloud: Cloud) -> Convention:
         ways = [own for *_, own in (wider if k < WHOLE else wider[:KEPT])]
     share, zero = np.diag(ways[0][0]), ways[0][1]
     return Convention(_left(cloud, share, zero), share, zero)
+
+
+def one_zero(cloud: Cloud) -> Convention:
+    """The best zero of one joint, by whatever angle it is off, where all else is as it stands."""
+    n = cloud.a.shape[1]
+
+    def left(k: int, angle: float) -> float:
+        return _left(cloud, np.eye(n), angle * np.eye(n)[k])
+
+    best, joint, zero = np.inf, 0, 0.0
+    for k in np.flatnonzero(~np.array(cloud.robot.prismatic)).tolist():
+        tried = [left(k, angle) for angle in ZEROS]
+        near = int(np.argmin(tried))
+        if tried[near] < best:
+            best, joint, zero = tried[near], k, float(ZEROS[near])
+    step = float(ZEROS[1] - ZEROS[0])
+    found = minimize_scalar(
+        lambda angle: left(joint, angle), bounds=(zero - step, zero + step), method="bounded",
+        options={"xatol": FINE},
+    )  # fmt: skip
+    rms, zero = float(found.fun), float(found.x)
+    quarter = np.pi / 2 * round(zero / (np.pi / 2))
+    if abs(zero - quarter) < SAGGED:
+        rms, zero = left(joint, quarter), quarter
+    return Convention(rms, np.eye(n), zero * np.eye(n)[joint])
 
 
 def _left(cloud: Cloud, share: Array, zero: Array) -> float:

@@ -12,6 +12,7 @@ from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 
 _ARTICLE = {"angle": "an angle", "length": "a length"}
+NEXT = "next_"  # begins the labels of poses to measure next
 # Joint values of one pose that differ by less are the same value written twice.
 SAME_JOINT = 1e-9  # rad or m
 
@@ -26,6 +27,13 @@ def rows_by_label(labels: NDArray[np.integer]) -> list[Index]:
     order = np.argsort(labels, kind="stable")
     ends = np.flatnonzero(np.diff(labels[order])) + 1
     return np.split(order, ends)
+
+
+def labels_to_come(known: Sequence[str], count: int) -> tuple[str, ...]:
+    """Labels of poses to measure next, none of them taken: readings of a round before have some."""
+    numbers = (label.removeprefix(NEXT) for label in known if label.startswith(NEXT))
+    last = max((int(number) for number in numbers if number.isdecimal()), default=0)
+    return tuple(f"{NEXT}{last + 1 + k}" for k in range(count))
 
 
 def rows_at_rest(joints: Array, within: float, alike: Array | None = None) -> list[Index]:

@@ -122,6 +122,7 @@ def linear_at(
             found[effect] = slope[:, columns]
             residual = residual + white(found[effect] @ model.values[columns])
     off = frames_off(model)
+    known = {p.name: p.internal for p in model.parameters}
     shown: list[Effect] = []
     sizes: list[Array] = []
     blocks: list[Array] = []
@@ -129,6 +130,10 @@ def linear_at(
     hidden: list[Effect] = []
     for effect in effects:
         size = usual_sizes(effect, off)
+        if isinstance(effect, JointFrame) and effect.id in fitted:  # however far it is off
+            size = np.maximum(
+                size, np.abs([known[f"{effect.id}.{s.name}"] for s in effect.parameters])
+            )
         block = beside(Q, white(found[effect] * size))
         if not block.any():
             hidden.append(effect)

@@ -15,6 +15,7 @@ from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.poses import labels_to_come
 from sk120stiff.plan import Cell, Rig, Rivalry, cell_from_data, random_pool
 from sk120stiff.plan.discriminate import over_ranges, with_both
 
@@ -117,22 +118,23 @@ def _telling(final: Calibration, there: Measurements, effect: Effect, rival: Eff
         gains.append(each)
     choice = Rivalry.of(gains, [A.T @ A for A in known]).best(min(COUNT, there.n_readings))
     picked = there.select(np.array(choice.rows))
+    labels = labels_to_come(problem.measurements.pose, picked.n_readings)
     return NextPoses(
-        _blank(picked, f"Poses and loads that tell {effect.id} from {rival.id}."),
+        _blank(picked, labels, f"Poses and loads that tell {effect.id} from {rival.id}."),
         (effect.id, rival.id),
         choice.before,
         choice.after,
     )
 
 
-def _blank(picked: Measurements, source: str) -> Measurements:
+def _blank(picked: Measurements, pose: tuple[str, ...], source: str) -> Measurements:
     """Readings to take: joint values as people type them, nothing of when or what was read."""
     said, count = picked.absolute, picked.n_readings
     if said is None:
         raise ValueError("these are no positions")
     return replace(
         picked,
-        pose=tuple(f"next_{k + 1}" for k in range(count)),
+        pose=pose,
         joints=np.where(
             [kind == "angle" for kind in picked.joint_kinds],
             np.radians(np.round(np.degrees(picked.joints), 4)),

@@ -19,6 +19,7 @@ from sk120stiff.files import csv_text, together, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
+from sk120stiff.measurements.poses import labels_to_come
 from sk120stiff.model import Model, write_model
 from sk120stiff.model.predicted import predict_what_holds, prediction_table
 
@@ -96,7 +97,7 @@ def plan_of(answer: Explanation, readings: Measurements) -> Measurements:
         raise ValueError("there is nothing to measure next")
     a, wrench = answer.next_poses
     return Measurements(
-        pose=tuple(f"next_{k + 1}" for k in range(len(a))),
+        pose=labels_to_come(readings.pose, len(a)),
         joint_names=readings.joint_names,
         joint_kinds=readings.joint_kinds,
         joints=np.asarray(a),

@@ -27,6 +27,7 @@ BEYOND_DOUBT = 10.0  # logarithm of the odds for it
 AS_WELL = 1.25  # times the square that springs of either sign leave as gravity is stated
 FAR = np.radians(10.0)  # rad between two directions, below which the base is no more than unlevel
 ROUNDS = 30  # of fitting springs and direction in turn
+ROUNDING = 1e-9  # of the largest number, below which gravity makes nothing
 NEAR_AXIS = 0.02  # components below which a direction is that of an axis
 
 
@@ -40,10 +41,11 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
     """
     robot = found.model.robot
     size = float(np.linalg.norm(robot.gravity_in_base))
-    if size == 0.0 or found.problem.channels.displacements_alone:
-        return ()
+    present = set(found.problem.channels.present)
+    if size == 0.0 or "position" not in present or "inclination" in present:
+        return ()  # a level shows where gravity points itself
     sag = _Sag.of(found)
-    if sag.freedom <= 0:
+    if sag.freedom <= 0 or not sag.by_axis.any():
         return ()
     stated = robot.gravity_in_base / size
     best = sag.best()
@@ -91,12 +93,14 @@ class _Sag:
     """What springs make of gravity, beside the errors of all joint frames.
 
     Attributes:
-        by_axis: (3, r, n) readings per compliance and per unit of gravity along an axis.
+        by_axis: (3, r, n) readings per compliance that gravity of its size along an axis makes.
+        pulled: (r, n) those that loads make beside it.
         gap: (r,) what is to be explained.
         freedom: Numbers beyond those of frames and springs.
     """
 
     by_axis: Array
+    pulled: Array
     gap: Array
     freedom: int
 
@@ -126,14 +130,17 @@ class _Sag:
 
         gap, slope = columns(wide)
         Q = np.asarray(np.linalg.qr(slope[:, ~own])[0])
-        parts = [columns(wide.under(size * axis))[1][:, own] for axis in np.eye(3)]
+        ways = [size * axis for axis in (*np.eye(3), np.zeros(3))]
+        parts = [columns(wide.under(way))[1][:, own] for way in ways]
         whole = np.column_stack([*parts, gap])
         for _ in range(2):
             whole = whole - Q @ (Q.T @ whole)
         R = np.asarray(np.linalg.qr(whole)[1])
         n = int(own.sum())
-        by_axis = np.array([R[:, k * n : (k + 1) * n] for k in range(3)])
-        return cls(by_axis, R[:, -1], len(gap) - Q.shape[1] - n)
+        along = np.array([R[:, k * n : (k + 1) * n] for k in range(4)])
+        by_axis = along[:3] - along[3]
+        by_axis[np.abs(by_axis) < ROUNDING * np.abs(along).max()] = 0.0
+        return cls(by_axis, along[3], R[:, -1], len(gap) - Q.shape[1] - n)
 
     def best(self) -> Array:
         """(3,) unit vector along which gravity explains most."""
@@ -151,7 +158,7 @@ class _Sag:
         return float(left @ left)
 
     def _along(self, way: Array) -> Array:
-        return np.asarray(np.einsum("k,krn->rn", way, self.by_axis))
+        return np.asarray(self.pulled + np.einsum("k,krn->rn", way, self.by_axis))
 
     def _settled(self, way: Array) -> Array:
         """The direction to which springs and gravity, fitted in turn, come from another."""
@@ -160,7 +167,7 @@ class _Sag:
             sides = self.by_axis @ c
             if not sides.any():
                 return way
-            found = np.linalg.lstsq(sides.T, self.gap, rcond=None)[0]
+            found = np.linalg.lstsq(sides.T, self.gap - self.pulled @ c, rcond=None)[0]
             if not found.any():
                 return way
             way = found / np.linalg.norm(found)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
 from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.masses import with_masses
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
 from sk120stiff.measurements.importers.words import (
     file_units,
@@ -112,6 +113,7 @@ def _numeric(row: tuple[str, ...]) -> bool:
 def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> bool:
     named = [unit_of_header(cell) for cell in row if not is_number(cell)]
     known = [meaning(name, source.actuated) for name, _ in named]
+    known, _ = with_masses([name for name, _ in named], known, [unit for _, unit in named])
     found = {each[0] for each in with_torques(known, [unit for _, unit in named]) if each}
     return any(set(group) <= found for group in NEEDED[source.role])
 
@@ -134,6 +136,7 @@ def _laid_out(
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
     known = [meaning(name, source.actuated) if name else None for name, _ in named]
+    known, units = with_masses([name for name, _ in named], known, units)
     known = with_torques(known, units)
     meanings = _measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])

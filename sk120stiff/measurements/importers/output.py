@@ -67,8 +67,14 @@ def settings_for(
         xyz = fitted.marker
         shown = ", ".join(f"{round(1e3 * float(v), 1) + 0.0:.1f}" for v in xyz)
         said = (
-            f"The marker sits, and the load acts, at ({shown}) mm in the tool frame: the best "
-            "place for these positions."
+            f"The marker sits at ({shown}) mm in the tool frame: the best place for these "
+            "positions."
+        )
+        said += (
+            " The load is taken to act there, too; where else it does is what force.point or "
+            "payload.point in the YAML file says."
+            if draft.loads.taken
+            else ""
         )
     elif mode == "positions":
         said = "Where the marker sits is not known; the fit finds it."

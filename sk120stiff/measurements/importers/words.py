@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from sk120stiff import units
+from sk120stiff.measurements.importers.masses import MASSES
 
 TS = ("tx", "ty", "tz")
 _AXIS = r"(?P<a>[xyz])"
@@ -108,7 +109,7 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
 
 def is_unit(text: str) -> bool:
     """Is this the name of a unit, that of a temperature or a mass among them?"""
-    return text.strip() in {*_DEGREES, "K", "kg"} or units.is_unit(text)
+    return text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
 
 
 def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] | None:

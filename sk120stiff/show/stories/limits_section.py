@@ -14,6 +14,7 @@ from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import ENOUGH
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.poses import labels_to_come
 from sk120stiff.show.report import Block, Items, Note, Section, Table
 from sk120stiff.show.stories.verdicts import noise_makes
 from sk120stiff.show.wording import counted, number, said_in, um
@@ -131,11 +132,12 @@ def next_section(answer: Explanation, link: str) -> Section | None:
     if answer.next_poses is None:
         return None
     a, wrench = answer.next_poses
+    labels = labels_to_come(answer.readings.pose, len(a))
     robot = answer.final.model.robot
     units = ["mm" if slides else "deg" for slides in robot.prismatic]
     scale = np.array([1e3 if slides else np.degrees(1.0) for slides in robot.prismatic])
     rows = [
-        (f"next_{k + 1}", *(round(float(x), 1) for x in a[k] * scale),
+        (labels[k], *(round(float(x), 1) for x in a[k] * scale),
          *(round(float(f), 0) for f in wrench[k, :3]))
         for k in range(len(a))
     ]  # fmt: skip
