@@ -76,7 +76,10 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     x = said.channels.position
     x = np.full((readings.n_readings, 3), np.nan) if x is None else x
     whole = np.flatnonzero(np.isfinite(x).all(axis=1) & readings.use)
-    whole = _lightest(readings, said, whole)
+    lost = whole[(x[whole] == 0.0).all(axis=1)]  # a tracker that saw nothing
+    whole = _lightest(
+        readings, said, whole if len(lost) == len(whole) else np.setdiff1d(whole, lost)
+    )
     if len(whole) < FEWEST:
         return _by_distances(robot, readings)
     stations, stood = said.stood
@@ -133,6 +136,13 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     distance[whole] = cloud.left(found)
     wild = np.zeros(readings.n_readings, dtype=bool)
     wild[whole[~kept]] = True
+    if len(lost) and not np.isin(lost, whole).any():
+        wild[lost] = True
+        lines = listed([str(readings.line[row]) for row in lost])
+        notes.append(
+            f"The position is exactly 0, 0, 0 in line{'s' * (len(lost) > 1)} {lines}, as where a "
+            "tracker saw nothing: set aside. Leave such cells blank."
+        )
     return Placing(
         shift=found.shifts,
         turn=rotation_vector(found.turns),
