@@ -15,6 +15,7 @@ from sk120stiff.errors import InputError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 _WITH_UNIT = re.compile(r"[+-]?[\d.]+\s*[^\d\s.,_+-]+.*")
+_UNREAD = "An axis that was not read is a blank cell."
 _COMMAS = (
     "Separate the cells by commas and write decimals with a point: 1.5, not 1,5. Files of other "
     "programs 'sk120stiff import' reads as they are."
@@ -197,7 +198,7 @@ def _complaint(cell: str) -> tuple[str, str] | None:
             return f"{cell!r} is no number", "Write decimals with a point: 1.5, not 1,5."
         if _WITH_UNIT.fullmatch(cell):
             return f"{cell!r} is no number", "The unit stands in the header, not in the cell."
-        return f"{cell!r} is no number", "Write a number."
+        return f"{cell!r} is no number", f"Write a number. {_UNREAD}"
     if "_" in cell:
         return f"{cell!r} is no number", "Write a number."
-    return None if np.isfinite(value) else (f"{cell} is not a finite number", row)
+    return None if np.isfinite(value) else (f"{cell} is not a finite number", f"{_UNREAD} {row}")
