@@ -131,6 +131,15 @@ def warn(text: str, *, stacklevel: int = 2) -> None:
     warnings.warn(text, ToolkitWarning, stacklevel=stacklevel + 1)
 
 
+def two_digits(value: float) -> str:
+    """Two significant digits; from 100 to 100 000 all before the point, and no power of ten.
+
+    >>> two_digits(0.01234), two_digits(9.96), two_digits(103.4), two_digits(1.23e6)
+    ('0.012', '10', '103', '1.2e+06')
+    """
+    return f"{value:.0f}" if 99.5 <= abs(value) < 1e5 else f"{value:.2g}"
+
+
 def listed(words: Sequence[str], joint: str = "and") -> str:
     """``a, b and c``: names in a sentence."""
     if len(words) < 2:

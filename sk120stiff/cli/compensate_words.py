@@ -10,7 +10,7 @@ from sk120stiff.arrays import Array, largest, rms
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
 from sk120stiff.effects import Viewpoint
-from sk120stiff.errors import InputError, warn
+from sk120stiff.errors import InputError, two_digits, warn
 from sk120stiff.model import Model
 from sk120stiff.model.predicted import blame_reason
 from sk120stiff.plan import Cell, feasible
@@ -89,12 +89,15 @@ def standing_words(model: Model, uncertainty: StandingUncertainty | None) -> lis
     if uncertainty.blame:
         return [f"How far off it stands in truth is unknown: it {blame_reason(uncertainty.blame)}."]
     own, left = uncertainty.rms
-    words = f"{own * 1e6:.2g} µm from the parameters"
+    words = f"{two_digits(own * 1e6)} µm from the parameters"
     if left is None:
         words += f"; {NO_REMAINDER}"
     else:
-        words += f", {left * 1e6:.2g} µm from what the model leaves unexplained"
-    return [f"After ± {np.hypot(own, left or 0.0) * 1e6:.2g} µm: one standard distance, {words}."]
+        words += f", {two_digits(left * 1e6)} µm from what the model leaves unexplained"
+    return [
+        f"After ± {two_digits(1e6 * np.hypot(own, left or 0.0))} µm: one standard distance, "
+        f"{words}."
+    ]
 
 
 def point_words(model: Model) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.data_checks import look, refuse_unbelievable, without_copies
 from sk120stiff.effects import effect
-from sk120stiff.errors import InputError, warn
+from sk120stiff.errors import InputError, two_digits, warn
 from sk120stiff.files import will_write
 from sk120stiff.identify import (
     Calibration,
@@ -251,8 +251,8 @@ def _parts(
     parts: list[object] = [fit_report(found, profile=intervals)]
     if error is not None:
         parts.append(
-            f"At poses left out of the fit: {error.rms * 1e6:.3g} ± {error.std * 1e6:.2g} µm rms "
-            f"per axis ({error.folds} parts)."
+            f"At poses left out of the fit: {error.rms * 1e6:.3g} ± "
+            f"{two_digits(error.std * 1e6)} µm rms per axis ({error.folds} parts)."
         )
     if lines:
         columns = ["model", "values", "fitted", "held out", "±", "loss", "±", "ΔAIC", "ΔBIC", ""]

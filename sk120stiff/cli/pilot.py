@@ -17,7 +17,7 @@ from sk120stiff.cli.cell import opened_cell
 from sk120stiff.cli.frame import Answer, emit, note
 from sk120stiff.cli.opening import open_model
 from sk120stiff.cli.tables import plan_table, progress_bar, table
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, two_digits
 from sk120stiff.files import validated
 from sk120stiff.measurements import Measurements
 from sk120stiff.pilot.campaign import Campaign, State
@@ -171,7 +171,12 @@ def _answer(
 ) -> Answer:  # fmt: skip
     names = list(state.belief.probabilities.items()) if state.belief.linear.effects else []
     rows = [
-        (name, f"{value:.5g}", f"± {std:.2g}" if std < abs(value) else "not known yet", unit)
+        (
+            name,
+            f"{value:.5g}",
+            f"± {two_digits(std)}" if std < abs(value) else "not known yet",
+            unit,
+        )
         for name, value, std, unit in state.springs
     ]
     said: list[object] = [

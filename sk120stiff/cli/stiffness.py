@@ -18,6 +18,7 @@ from sk120stiff.cli.options import (
 )
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
+from sk120stiff.errors import two_digits
 from sk120stiff.model import (
     LoadedStiffness,
     LoadedUncertainty,
@@ -151,7 +152,7 @@ def _with(value: float, std: float | None, factor: float) -> object:
 
 
 def _cells(std: Array) -> list[str]:
-    return [f"{x * 1e6:.2g}" if np.isfinite(x) else "?" for x in std]
+    return [f"{two_digits(x * 1e6)}" if np.isfinite(x) else "?" for x in std]
 
 
 def _seen(values: Array) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.arrays import Array, rms
+from sk120stiff.errors import two_digits
 from sk120stiff.model import Model
 
 NOT_STORED = "no uncertainty is stored in this model"
@@ -41,7 +42,7 @@ def plus_minus(value: float, std: float, digits: int = 5) -> str:
         return f"{value:.{digits}g}"
     if not np.isfinite(std):
         return f"{value:.{digits}g} ± ?"
-    return f"{value:.{digits}g} ± {std:.2g}"
+    return f"{value:.{digits}g} ± {two_digits(std)}"
 
 
 def sentences(
@@ -61,7 +62,7 @@ def sentences(
     if finite.any():
         said.append(
             f"Uncertainty of {what}, standard deviation per axis: "
-            f"{1e6 * rms(std_parameters):.2g} µm from the parameters"
+            f"{two_digits(1e6 * rms(std_parameters))} µm from the parameters"
             f"{_of_remainder(model, std_remainder)}. 95 %: ± {known.reach(0.95):.3g} times the "
             "whole; the noise of a reading comes on top."
         )
@@ -72,7 +73,7 @@ def _of_remainder(model: Model, std: Array | None) -> str:
     left = None if model.uncertainty is None else model.uncertainty.remainder
     if left is None or std is None:
         return f"; {NO_REMAINDER}"
-    size = f"{1e6 * rms(std):.2g} µm"
+    size = f"{two_digits(1e6 * rms(std))} µm"
     if not left.significant:
         return f", {size} from what it may lack (the fit left no more than noise, which hides some)"
     return f", {size} from what the model leaves unexplained"

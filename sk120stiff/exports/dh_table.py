@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import two_digits
 from sk120stiff.exports.contract import Exported, Format, Request
 from sk120stiff.exports.dh import (
     COLUMNS,
@@ -212,7 +213,7 @@ def _shown(k: int, row: Array, std: Array | None, r: int, reach: float | None) -
     if std is None or reach is None or std[r, k] == 0.0:
         return text
     error = std[r, k] * PUBLIC[k] * reach
-    return f"{text} ± {error:.2g}" if np.isfinite(error) else f"{text} ± ?"
+    return f"{text} ± {two_digits(error)}" if np.isfinite(error) else f"{text} ± ?"
 
 
 def _notes(model: Model, pairs: list[tuple[str, str, float]]) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from sk120stiff.errors import two_digits
 from sk120stiff.identify.checks.lack_of_fit import lack_of_fit
 from sk120stiff.identify.checks.null_space import weak_directions
 from sk120stiff.identify.checks.yardstick import yardstick
@@ -53,7 +54,7 @@ def _parameters(fit: Fit, profile: Sequence[tuple[float, float]] | None) -> list
             std, value = parameter.std, parameter.value
             error, share = ("±", _number(std)) if std is not None else ("", "on its bound"), ""
             if std is not None and np.isfinite(std) and value:
-                share = f"({100.0 * std / abs(value):.2g} %)"
+                share = f"({two_digits(100.0 * std / abs(value))} %)"
             cells = (parameter.name, _number(value), *error, share, _range(low, high))
         rows.append((*cells, parameter.spec.unit, start))
     return _aligned(rows)

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Integers
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, two_digits
 from sk120stiff.measurements.branches import TOLD
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.line_of_sight import SEEN, in_axes_of_sight
@@ -249,8 +249,8 @@ def decided(noise: NoiseModel, measurements: Measurements) -> tuple[str, ...]:
         )
     if noise.growth > 0 and measurements.noise.growth is None:
         said.append(
-            f"Repeats scatter the more the larger the displacement: {noise.growth * 100:.2g} % of "
-            "it is added to the uncertainty, in squares."
+            f"Repeats scatter the more the larger the displacement: "
+            f"{two_digits(noise.growth * 100)} % of it is added to the uncertainty, in squares."
         )
     return tuple(said)
 

@@ -13,6 +13,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.data_checks import without_copies
 from sk120stiff.effects import LoadCases, load_cases_of
+from sk120stiff.errors import two_digits
 from sk120stiff.identify import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
@@ -257,7 +258,7 @@ class Campaign:
         if not found or self.target is None:
             return ""
         names = ", ".join(
-            f"{name} ({f'{100 * share:.2g} %' if share < 1.0 else 'unknown'})"
+            f"{name} ({f'{two_digits(100 * share)} %' if share < 1.0 else 'unknown'})"
             for name, share in found
         )
         return f" Not known to {100 * self.target:g} % yet: {names}; next.csv goes on for those."

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import two_digits
 from sk120stiff.pilot.belief import Belief
 from sk120stiff.pilot.campaign import Campaign
 from sk120stiff.plan.design import DISPLACEMENT
@@ -38,7 +39,8 @@ class Surprise:
         """Why a person should look again before it counts; empty where nothing is odd."""
         size, usual = float(np.linalg.norm(self.read)), float(np.linalg.norm(self.expected))
         if size > IMPLAUSIBLE or size > TIMES * usual + DOUBTED * self.noise:
-            return f"This moves by {1e3 * size:.3g} mm, where {1e3 * usual:.2g} mm were expected."
+            far, near = f"{1e3 * size:.3g} mm", f"{two_digits(1e3 * usual)} mm"
+            return f"This moves by {far}, where {near} were expected."
         if self.off > DOUBTED:
             mean, std = (
                 ", ".join(f"{1e3 * x + 0.0:.3f}" for x in v) for v in (self.expected, self.std)

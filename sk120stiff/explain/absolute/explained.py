@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sk120stiff.effects import Effect
+from sk120stiff.errors import two_digits
 from sk120stiff.explain.absolute.accounts import GapStep, HeldOutFile
 from sk120stiff.explain.absolute.budget import budget_of
 from sk120stiff.explain.absolute.choose import Gain
@@ -154,7 +155,7 @@ class Explained:
         """What the arm's weight would explain where no spring is named, in a sentence."""
         if self.springs is None:
             return ()
-        more = f"{100 * self.springs:.2g} % more" if self.springs > 0.0 else "nothing more"
+        more = f"{two_digits(100 * self.springs)} % more" if self.springs > 0.0 else "nothing more"
         return (
             f"Springs in all joints under the arm's weight would take {more} off the gap at poses "
             "left out: they are not named.",

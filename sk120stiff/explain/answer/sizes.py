@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import two_digits
 from sk120stiff.explain.judge.budget import internal_covariance
 from sk120stiff.explain.judge.gear_curve import STEPS, gear_curves
 from sk120stiff.identify import Fit
@@ -109,4 +110,4 @@ def _std(weight: Array, covariance: Array) -> float | None:
 
 def _microradians(value: float, std: float | None) -> str:
     micro = f"{1e6 * value:.0f}" if value >= 1e-4 else f"{1e6 * value:.3g}"
-    return f"{micro} µrad" if std is None else f"{micro} ± {1e6 * std:.2g} µrad"
+    return f"{micro} µrad" if std is None else f"{micro} ± {two_digits(1e6 * std)} µrad"

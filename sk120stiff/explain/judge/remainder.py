@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import expit
 from scipy.special import logit as _logit
 
+from sk120stiff.errors import two_digits
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.priors import SOMETHING_ELSE
@@ -95,7 +96,7 @@ class Remainder:
             )
         parts = []
         if self.form.proportional:
-            parts.append(f"{100.0 * self.form.proportional:.2g} % of a pose's compliance")
+            parts.append(f"{two_digits(100.0 * self.form.proportional)} % of a pose's compliance")
         if self.form.constant:
             parts.append(f"{1e6 * self.form.constant:.3g} µm of its own")
         as_if = f", as if every pose had {' and '.join(parts)} that no effect explains"

@@ -14,6 +14,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
+from sk120stiff.errors import two_digits
 from sk120stiff.explain.localise.drives import angles, drives, laws, waves
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model import Model
@@ -251,7 +252,7 @@ def _comings_and_goings(load_cases: LoadCases) -> Iterator[Suspect]:
         )
         columns = np.einsum("nij,nk->nijk", load_cases.reading_axes, to_and_fro)
         period = 2.0 * whole / count
-        every = f"{period / 60.0:.2g} min" if timed else f"{period:.2g} readings"
+        every = f"{two_digits(period / 60.0)} min" if timed else f"{two_digits(period)} readings"
         name = f"the {'time' if timed else 'order'} of the readings{TO_AND_FRO}{every}"
         label = "time [s]" if timed else "reading"
         columns = columns.reshape(load_cases.count, 3, 6)

@@ -17,7 +17,7 @@ from sk120stiff.effects import Elastic
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.joint_springs import JointSprings
 from sk120stiff.effects.transmission_error import TransmissionError
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, two_digits
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -54,7 +54,7 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
     if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):
         return ()
     off = float(np.arccos(np.clip(best @ stated, -1.0, 1.0)))
-    share = f"{100.0 * float(np.sqrt(after / before)):.2g} %"
+    share = f"{two_digits(100.0 * float(np.sqrt(after / before)))} %"
     if off < FAR:
         return (
             f"The arm sags as if its base stood {np.degrees(off):.2g} deg off level: with "

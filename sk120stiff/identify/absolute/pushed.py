@@ -19,7 +19,7 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.reading_drift import BRIEF, COURSES
-from sk120stiff.errors import InputError, listed
+from sk120stiff.errors import InputError, listed, two_digits
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements
@@ -94,7 +94,7 @@ def refuse_pushed(
     between = [f"{line[order[k - 1]]} and {line[order[k]]}" for k in cuts]
     looks = (
         f"{cause.what} looks moved between lines {listed(between)}: with another place from there "
-        f"on the gap falls to {100.0 * share:.2g} % of what all else leaves"
+        f"on the gap falls to {two_digits(100.0 * share)} % of what all else leaves"
     )
     remedy = (
         f"Add a column {cause.column} with a label for each time between, as a and b: each has "

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import SPRINGS
-from sk120stiff.errors import listed
+from sk120stiff.errors import listed, two_digits
 from sk120stiff.identify.checks.unseen import why_unseen
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
@@ -125,7 +125,7 @@ def _known_of(fit: Fit, group: Overlay) -> str:
         for i, (p, r) in enumerate(zip(members, ratio, strict=True))
         if i != first
     ]
-    return f"one sum of their {kind} is known to {share:.2g} % ({' '.join(terms)})"
+    return f"one sum of their {kind} is known to {two_digits(share)} % ({' '.join(terms)})"
 
 
 def _cure(fit: Fit, group: Overlay) -> str:
@@ -248,7 +248,11 @@ def _of_calibrations(fit: Fit, group: Sequence[int]) -> str:
         effect, spec = fit.parameters[k].effect, fit.parameters[k].spec
         if effect.calibrated and fit.identifiable[k]:
             share = spec.unit == "1"
-            size = f"{100 * spec.usual:.2g} %" if share else f"{spec.usual:.2g} {spec.unit}"
+            size = (
+                f"{two_digits(100 * spec.usual)} %"
+                if share
+                else f"{two_digits(spec.usual)} {spec.unit}"
+            )
             known[effect.name] = f"{effect.name.replace('_', ' ')} {size}"
     if not known:
         return ""
@@ -267,7 +271,8 @@ def _pair(fit: Fit, group: Sequence[int]) -> str:
     first, second = (fit.parameters[k] for k in group)
     return (
         f"{words_for(first)} and {words_for(second)} move together: only {known} is known, "
-        f"{value:.4g} ± {std:.2g} {first.spec.internal_unit}." + _of_calibrations(fit, group)
+        f"{value:.4g} ± {two_digits(std)} {first.spec.internal_unit}."
+        + _of_calibrations(fit, group)
     )
 
 
@@ -324,8 +329,8 @@ def _correlation(fit: Fit, first: int, second: int) -> str:
     share = 100.0 * std / max(abs(value), 1e-300)
     return (
         f"{words_for(fit.parameters[first])} and {words_for(fit.parameters[second])} move together "
-        f"(correlation {fit.correlation[first, second]:.3f}): {known} is known to {share:.2g} %, "
-        "each alone much less."
+        f"(correlation {fit.correlation[first, second]:.3f}): {known} is known to "
+        f"{two_digits(share)} %, each alone much less."
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import two_digits
 from sk120stiff.identify import Fit
 from sk120stiff.model import LoadedStiffness, loaded_stiffness
 from sk120stiff.show.figures import PlaneEllipse, plane_ellipses
@@ -26,7 +27,7 @@ def stiffness_section(fit: Fit) -> Section:
         "How stiff the arm is at these poses",
         [
             f"Under the largest load of each pose, K_C changes a principal stiffness by at most "
-            f"{100.0 * change:.2g} %: it closes no gap here. "
+            f"{two_digits(100.0 * change)} %: it closes no gap here. "
             f"{number(critical, 3)} times the load would make the arm unstable.",
             _table(found),
             _ellipses(fit, {label: stiff for label, (stiff, _) in found.items()}),
@@ -69,7 +70,8 @@ def _ellipses(fit: Fit, found: dict[str, LoadedStiffness]) -> Picture:
         for view in arm_views(fit, {})
     ]
     yields = "; ".join(
-        f"pose {label} {1e6 / stiff.principal.values[0]:.2g} µm/N" for label, stiff in found.items()
+        f"pose {label} {two_digits(1e6 / stiff.principal.values[0])} µm/N"
+        for label, stiff in found.items()
     )
     return Picture(
         lambda: plane_ellipses(drawn, plane="xy", name="yields to a force of 1 N"),
