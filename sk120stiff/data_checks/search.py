@@ -19,6 +19,7 @@ from sk120stiff.data_checks.from_a_row_on import from_a_row_on
 from sk120stiff.data_checks.passive import Passive, passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
 from sk120stiff.data_checks.slips import floor, floors, of_axes, of_joints, of_rows, sign_of
+from sk120stiff.data_checks.turned_axes import by_any_angle, quarter_turns
 from sk120stiff.errors import ToolkitError
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
@@ -29,6 +30,7 @@ LUCK = 30.0  # twice the log-likelihood that the best of a hundred useless corre
 SOUND = 0.75  # share explained once readings are right; what no passive arm does costs some
 DOUBTFUL = 0.97  # share below which several joints are tried at once
 NEXT_TO = 1.5  # times as much left by another correction that is told beside the best one
+ALIKE = 1.05  # times as much left by a turn of the base, which is told rather than one of a joint
 STEPS = 3  # slips told of one file
 SPARE = 6  # numbers beyond the compliances that it takes to judge a fit
 CONVENTION = 8  # joints at most whose signs are tried together: 2ⁿ choices
@@ -100,6 +102,9 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
         together = _joints_together(start)
         if together is not None and _clearly(now, together, CLEARER):
             now, rival = together, None
+    axes, other = _turned(start)
+    if axes is not None and _clearly(now, axes, CLEARER):
+        now, rival = axes, other
     if not now.corrections and now.found.share < DOUBTFUL and len(sheet.kept) == len(lines):
         below = from_a_row_on(sheet, lines, _drives(sheet.columns(), sheet.told, robot.n))
         if below is not None:
@@ -174,6 +179,28 @@ def _clearly(now: Tried, other: Tried, ratio: float) -> bool:
         return now.left > 0.0
     gained = np.log(now.left / other.left)
     return bool(gained > np.log(ratio) and now.sheet.told * gained > LUCK)
+
+
+def _turned(start: Tried) -> tuple[Tried | None, Correction | None]:
+    """Axes or a zero that are turned, and what does nearly as well; None: nothing tells of it."""
+    corrections = list(quarter_turns(start.sheet))
+    if start.found.share < DOUBTFUL:
+        few = as_it_stands(start.sheet.thinned(MANY))
+
+        def left(correction: Correction) -> float:
+            found = _all_of((correction,), few.sheet)
+            return np.inf if found is None else found.left
+
+        corrections += by_any_angle(few.sheet, left)
+    tried = _tried(start, corrections)
+    good = [each for each in tried if _clearly(start, each, CLEARER_TOGETHER)]
+    if not good:
+        return None, None
+    least = min(each.left for each in good)
+    best = next(each for each in good if each.left < ALIKE * least)
+    said = best.corrections[-1].said
+    near = [each.corrections[-1] for each in good if each.left < NEXT_TO * best.left]
+    return best, next((each for each in near if each.said != said), None)
 
 
 def _joints_together(start: Tried) -> Tried | None:

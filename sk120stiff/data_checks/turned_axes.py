@@ -1,0 +1,102 @@
+"""Axes that are turned: of base and readings about the base's z, and zeros of joints.
+
+Another base frame than the one that loads and displacements are stated in is the usual slip, as on
+arms whose base link is turned by half a turn against the world.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.sheet import Sheet
+
+QUARTERS = (1, 2, 3)
+ROUNDING = 1e-12  # of a cosine
+COARSE, FINE = np.radians(15.0), np.radians(0.5)  # steps in which a turn is looked for
+
+
+def quarter_turns(sheet: Sheet) -> Iterator[Correction]:
+    """Axes and zeros that are off by quarters of a turn."""
+    for quarter in QUARTERS:
+        for both in _turned_by(sheet):
+            yield turned(quarter * np.pi / 2, both=both)
+    for k, slides in enumerate(sheet.robot.prismatic):
+        for quarter in () if slides else QUARTERS:
+            yield _zero(sheet, k, (quarter + 1) % 4 - 1)
+
+
+def by_any_angle(sheet: Sheet, left: Callable[[Correction], float]) -> list[Correction]:
+    """The best turn of both, and of the displacements alone, from coarse to fine.
+
+    Args:
+        sheet: The readings as they stand.
+        left: What is left with a correction.
+    """
+    if np.isnan(sheet.measured[:, :2]).any():
+        return []
+    out = []
+    for both in _turned_by(sheet):
+        angle, step = 0.0, COARSE
+        tried = np.arange(-np.pi, np.pi, step)
+        while step >= FINE:
+            angle = float(min(tried, key=lambda each: left(turned(each, both=both))))
+            step *= 0.5
+            tried = np.array([angle - step, angle, angle + step])
+        out.append(turned(angle, both=both))
+    return out
+
+
+def turned(angle: float, *, both: bool) -> Correction:
+    """Displacements, or loads too, are stated in axes turned by an angle about the base's z."""
+    degrees = 180.0 - round((180.0 - float(np.degrees(angle))) % 360.0, 1)
+    what = "force and displacement look" if both else "the displacement looks"
+    said = f"{what} stated in axes that are turned by {degrees:g} deg about z of the base frame"
+    remedy = (
+        "Choose the base frame that they are stated in (base_frame, --base), or turn them by as "
+        "much."
+        if both
+        else "Turn the displacement by as much, into axes of the base frame."
+    )
+
+    def mend(sheet: Sheet) -> Sheet:
+        mended = replace(sheet, displacement=_about_z(sheet.displacement, angle))
+        if not both:
+            return mended
+        wrench = [_about_z(sheet.wrench[:, part], angle) for part in (slice(3), slice(3, 6))]
+        return replace(mended, wrench=np.concatenate(wrench, axis=1))
+
+    return Correction(said, remedy, mend)
+
+
+def _turned_by(sheet: Sheet) -> tuple[bool, ...]:
+    """What may be turned about z of the base: what is stated in its axes."""
+    if sheet.displacement_frame != "base":
+        return ()
+    return (True, False) if sheet.force_frame == "base" else (False,)
+
+
+def _about_z(vectors: Array, angle: float) -> Array:
+    """(N, 3) turned; an axis that was not read stays so by quarters of a turn."""
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn[np.abs(turn) < ROUNDING] = 0.0
+    out = np.zeros_like(vectors)
+    for i, j in zip(*np.nonzero(turn), strict=True):
+        out[:, i] += turn[i, j] * vectors[:, j]
+    return out
+
+
+def _zero(sheet: Sheet, k: int, quarters: int) -> Correction:
+    """Joint k counts from elsewhere."""
+    name, degrees = sheet.robot.actuated[k], 90 * quarters
+    off = np.radians(degrees) * np.eye(sheet.robot.n)[k]
+    return Correction(
+        f"the zero of {name} seems to be {degrees} deg off",
+        f"Add {degrees} deg to the column {name}.",
+        lambda s: replace(s, joints=s.joints + off),
+    )

@@ -1,0 +1,95 @@
+"""Axes of base and readings that are turned about z, and zeros of joints that are quarters off."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from sk120stiff.data_checks import find_slip
+from sk120stiff.errors import Refusal
+from sk120stiff.explain import explain
+from sk120stiff.measurements import Measurements
+from tests.data_checks.readings import ARMS, ur5
+
+BOTH = "force and displacement look stated in axes that are turned by"
+ALONE = "the displacement looks stated in axes that are turned by"
+
+
+def turned(readings: Measurements, degrees: float, *, loads: bool) -> Measurements:
+    """As they are in axes that are turned by so much about z of the base."""
+    turn = Rotation.from_euler("z", -degrees, degrees=True).as_matrix().T
+    assert readings.displacement is not None
+    d = readings.displacement @ turn
+    if not loads:
+        return replace(readings, displacement=d)
+    both = [readings.wrench[:, part] @ turn for part in (slice(3), slice(3, 6))]
+    return replace(readings, displacement=d, wrench=np.hstack(both))
+
+
+def told(text: str, before: str) -> float:
+    found = re.search(re.escape(before) + r" (-?[\d.]+) deg", text)
+    assert found is not None, text
+    return float(found[1])
+
+
+@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize("degrees", [180.0, -90.0, 45.0, -21.0])
+def test_a_base_frame_that_is_turned(arm: str, degrees: float) -> None:
+    known = ARMS[arm]()
+    found = find_slip(known.robot, turned(known.readings, degrees, loads=True))
+    assert found is not None and found.after > 0.98
+    assert abs(told(found.said, BOTH) - degrees) < 1.0
+    assert "base_frame" in found.remedy
+
+
+@pytest.mark.parametrize("degrees", [45.0, -30.0, 17.0])
+def test_displacements_that_are_turned(degrees: float) -> None:
+    known = ur5()
+    found = find_slip(known.robot, turned(known.readings, degrees, loads=False))
+    assert found is not None
+    assert abs(told(found.said, ALONE) - degrees) < 1.0
+    assert "Turn the displacement by as much" in found.remedy
+
+
+@pytest.mark.parametrize(("k", "degrees"), [(2, 90), (3, 180), (4, -90)])
+def test_a_zero_that_is_quarters_off(k: int, degrees: int) -> None:
+    known = ur5()
+    off = np.radians(degrees) * np.eye(6)[k]
+    wrong = replace(known.readings, joints=known.readings.joints - off)
+    found = find_slip(known.robot, wrong)
+    name = known.robot.actuated[k]
+    assert found is not None and f"the zero of {name} seems to be {degrees} deg off" in found.said
+    assert found.remedy.startswith(f"Add {degrees} deg to the column {name}.")
+    mended = replace(wrong, joints=wrong.joints + off)
+    assert find_slip(known.robot, mended) is None
+
+
+def test_explain_stops() -> None:
+    known = ur5()
+    with pytest.raises(Refusal, match=r"turned by 180 deg about z"):
+        explain(known.model, turned(known.readings, 180.0, loads=True))
+
+
+@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize("degrees", [1.5, -4.0])
+def test_a_tracker_that_is_turned_by_little_is_no_slip(arm: str, degrees: float) -> None:
+    """That is a cause, which `explain` names."""
+    known = ARMS[arm]()
+    assert find_slip(known.robot, turned(known.readings, degrees, loads=False)) is None
+
+
+def test_one_axis_that_was_not_read_leaves_quarters() -> None:
+    known = ur5()
+    wrong = turned(known.readings, 180.0, loads=True)
+    assert wrong.displacement is not None
+    some = wrong.displacement.copy()
+    some[::3, 2] = np.nan
+    found = find_slip(known.robot, replace(wrong, displacement=some))
+    assert found is not None and told(found.said, BOTH) == 180.0
+    some[1::3, 0] = np.nan
+    found = find_slip(known.robot, replace(wrong, displacement=some))
+    assert found is not None and told(found.said, BOTH) == 180.0
