@@ -157,9 +157,13 @@ def test_shares_add_up(case) -> None:
 def test_clean_readings_raise_no_alarm() -> None:
     real = [localise(base_fit(hidden(seed=100 + k))).real for k in range(12)]
     assert sum(real) <= 1  # two tests at one per cent each
-    text = " ".join(where_sentences(localise(base_fit(hidden(seed=100)))))
+    found = localise(base_fit(hidden(seed=100)))
+    text = " ".join(where_sentences(found))
     assert "no more than noise" in text
     assert "Nothing stands out" in text
+    assert found.noise is not None
+    far = where_sentences(replace(found, rms=10.0 * found.noise))[0]  # poses differ by chance
+    assert "no more than" not in far and "may all be chance from pose to pose (p = " in far
 
 
 def test_probabilities_of_clean_readings_are_those_of_chance() -> None:

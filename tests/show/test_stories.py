@@ -288,3 +288,12 @@ def test_what_poses_have_of_their_own_is_told_where_the_noise_is_unknown(signifi
     answered = SimpleNamespace(adequacy=SimpleNamespace(chance=None), remainder=remainder)
     assert _left(answered)[:2] == told
     assert "the noise is unknown" in _left(answered)[2]
+
+
+@pytest.mark.parametrize(
+    ("p", "lacking", "word"), [(0.4, False, "no"), (0.004, False, "not sure"), (1e-5, True, "yes")]
+)
+def test_a_little_more_than_noise_is_not_called_none(p: float, lacking: bool, word: str) -> None:
+    adequacy = SimpleNamespace(chance=p, understated=None, lacking=lacking)
+    answered = SimpleNamespace(adequacy=adequacy, remainder=SimpleNamespace(significant=False))
+    assert _left(answered)[0] == word

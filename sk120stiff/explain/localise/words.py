@@ -19,6 +19,7 @@ ORIGINS = {
     "computed": ", the finest that instruments read",
     "repeats": ", as found from repeats",
 }
+TWICE = 2.0  # times the noise, beyond which a gap is not called as large as it
 MANY_POSES = 5  # more than this carry no longer a short list
 
 
@@ -48,6 +49,11 @@ def _size(found: Localisation) -> str:
     origin = ORIGINS.get(found.noise_from, "")
     if found.probability >= LEVEL:
         also = ", yet part of it goes with something" if found.strongest else ""
+        if found.rms > TWICE * found.noise:
+            return (
+                f"{gap}; the noise alone makes about {noise}{origin}, and what it is more may all "
+                f"be chance from pose to pose ({chance(found.probability)}){also}."
+            )
         return (
             f"{gap}; the noise alone makes about {noise}{origin}, so as a whole it is no more than "
             f"noise ({chance(found.probability)}){also}."

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from sk120stiff.errors import listed
-from sk120stiff.explain import Explanation
+from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import likely
@@ -165,4 +165,5 @@ def _left(answer: Explanation) -> tuple[str, str, str]:
     said = f"p {said}" if said.startswith("<") else f"p = {said}"
     if left.lacking and answer.remainder.significant:
         return f"{um(answer.remainder.rms)}", "µm", f"rms per axis; noise alone: {said}"
-    return "yes" if left.lacking else "no", "", said
+    doubtful = "not sure" if left.chance < DOUBTFUL else "no"
+    return "yes" if left.lacking else doubtful, "", said
