@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
+from sk120stiff.identify.absolute.creeping import creeping
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.weighing import pounds
@@ -78,7 +79,9 @@ def fit(
         told = refuse_another_gravity(calibrated, readings)
         told += refuse_pushed(calibrated, readings, calibrated.jacobian, alone)
         found = with_model_form(calibrated)
-        return replace(found, notes=(*told, *found.notes, *pounds(found)))
+        return replace(
+            found, notes=(*told, *found.notes, *pounds(found), *creeping(found, readings))
+        )
     if not waves:
         raise InputError(
             "only positions show waves of a gear, and these readings are displacements",

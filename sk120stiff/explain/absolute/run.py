@@ -43,6 +43,7 @@ from sk120stiff.identify.absolute.calibrate import (
     with_model_form,
     with_values_of,
 )
+from sk120stiff.identify.absolute.creeping import creeping
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.remainder import (
@@ -124,7 +125,9 @@ def explain_positions(
             found, laws = nothing_named(linear, found), {}
             final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
     final = beside_laws(final, linear, found.order, laws)
-    final = replace(final, notes=(*hangs, *pushed, *final.notes, *pounds(final)))
+    final = replace(
+        final, notes=(*hangs, *pushed, *final.notes, *pounds(final), *creeping(final, readings))
+    )
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
     named, following = _named(linear, found, final, options)
     gap = linear.gap(found.order, noise, held_out=True)
