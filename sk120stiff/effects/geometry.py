@@ -58,7 +58,7 @@ class JointOffset(Geometric):
         if self.slides:
             return (length_error("offset", typical=1e-3, scale=self.scale, meaning=STANDS),)
         return (
-            ParameterSpec("offset", "rad", "rad", plausible=0.02, typical=1e-3, meaning=STANDS),
+            ParameterSpec("offset", "rad", "rad", plausible=0.05, typical=1e-3, meaning=STANDS),
         )
 
     @classmethod
