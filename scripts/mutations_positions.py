@@ -125,7 +125,8 @@ OF_POSITIONS: tuple[Fault, ...] = (
         "identify/absolute/hanging.py", *tests("absolute", "hanging"),
         a_balancer_taken_for_a_ceiling=("if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):", "if odds < BEYOND_DOUBT:"),
         springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
-        gravity_along_one_axis_alone=("parts = [columns(wide.under(size * axis))", "parts = [columns(wide.under(size * np.eye(3)[2]))"),
+        gravity_along_one_axis_alone=("ways = [size * axis for axis in (*np.eye(3), np.zeros(3))]", "ways = [size * axis for axis in (*(np.eye(3)[[2, 2, 2]]), np.zeros(3))]"),
+        a_load_taken_for_weight=("by_axis = along[:3] - along[3]", "by_axis = along[:3]"),
         waves_taken_for_sag=("for kind in (JointFrame, TransmissionError) for", "for kind in (JointFrame,) for"),
         what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
     ),
@@ -145,5 +146,24 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "explain/absolute/explained.py", *tests("absolute", "advice"),
         one_of_a_class_left_open=("return not self.others and self.probability >= SURE", "return not self.alternatives and self.probability >= SURE"),
+    ),
+    *of(
+        "identify/absolute/creeping.py", *tests("absolute", "creeping"),
+        a_creep_where_the_order_is_stated=("if readings.order is not None or readings.time is not None:", "if readings.time is not None:"),
+    ),
+    *of(
+        "measurements/placing_slips.py", *tests("absolute", "zeros"),
+        a_zero_of_the_first_joint_alone=("best, joint, zero = tried[near], k, float(ZEROS[near])", "best, joint, zero = tried[near], 0, float(ZEROS[near])"),
+        a_zero_the_other_way=("return Convention(rms, np.eye(n), zero * np.eye(n)[joint])", "return Convention(rms, np.eye(n), -zero * np.eye(n)[joint])"),
+    ),
+    *of(
+        "data_checks/turned_axes.py", *tests("data_checks", "turned_axes"),
+        axes_turned_the_other_way=("turned by {degrees:g} deg", "turned by {-degrees:g} deg"),
+        loads_left_as_they_are=("        if not both:", "        if True:"),
+    ),
+    *of(
+        "measurements/importers/masses.py", *tests("measurements/importers", "masses"),
+        grams_taken_for_kilograms=('"g": 1e-3', '"g": 1.0'),
+        any_word_a_mass=("elif len(heavy) == 1:", "elif False:"),
     ),
 )  # fmt: skip

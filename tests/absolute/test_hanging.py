@@ -16,7 +16,8 @@ from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
-from tests.absolute.arm import Array, errors, poses, tracked, write
+from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
+from tests.absolute.loaded_arm import MARKERS, SPRINGS, rests
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 UP = {"ceiling": [0.0, 0.0, -1.0], "wall": [-1.0, 0.0, 0.0], "slope": [0.6, 0.0, 0.8]}
@@ -138,3 +139,21 @@ def test_an_arm_without_masses_or_gravity_says_nothing(tmp_path: Path) -> None:
     robot, data = read(tmp_path, UP["ceiling"], "massless")
     assert told(robot, data) == ()
     assert told(robot.under(np.zeros(3)), data) == ()
+
+
+@pytest.mark.parametrize("weighs", [False, True])
+def test_loads_that_pull_to_a_side_are_no_gravity(tmp_path: Path, weighs: bool) -> None:
+    a = np.repeat(poses(40, 3), 2, axis=0)
+    force = 500.0 * np.random.default_rng(2).normal(size=(80, 3))
+    force[::2] = 0.0
+    origin, axes = rests(Arm(compliance=SPRINGS, weighs=weighs), a, force)
+    x = origin + np.einsum("nij,j->ni", axes, MARKERS["A"])
+    x = tracked(x + 2e-5 * np.random.default_rng(1).normal(size=x.shape))
+    cells = [",".join(f"{v:g}" for v in f) for f in force]
+    settings = FIT + "force: {frame: base, point: {xyz: [0, 0, 100], unit: mm}}\n"
+    path = write(
+        tmp_path, a, x, settings + ("" if weighs else "massless"), more=",fx[N],fy[N],fz[N]",
+        cells=cells,
+    )  # fmt: skip
+    data = sk.read(path)
+    assert told(sk.load_robot(data.robot, base="base", tool="tool"), data) == ()
