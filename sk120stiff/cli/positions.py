@@ -17,6 +17,7 @@ from sk120stiff.explain import Explained
 from sk120stiff.explain.absolute.accounts import HeldOutFile
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
+from sk120stiff.explain.findings import likely
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.model import Model, base_model
@@ -72,7 +73,10 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             f"{item.effect.sentence()} [{item.effect.id}] ({answer.chance_of(item)}, takes off "
             f"{100 * item.gain.share:.1f} %)"
         )
-        shown += [f"  or {other} ({item.kind_of(other)})" for other in item.alternatives]
+        shown += [
+            f"  or {other} ({item.kind_of(other)}; {likely(answer.probabilities.get(other, 0.0))})"
+            for other in item.alternatives
+        ]
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
     whole = np.isfinite(answer.steps[-1].heldout_distance)

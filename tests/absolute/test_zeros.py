@@ -46,6 +46,24 @@ def test_a_zero_that_is_off_by_two_degrees_is_named(tmp_path: Path) -> None:
     found = sk.explain(Model(sk.load_robot(data.robot, base="base", tool="tool")), data)
     assert isinstance(found, Explained)
     names = {item.effect.id for item in found.findings}
-    assert names == {"joint_frame:j3", "joint_springs:j2", "joint_springs:j3", "joint_springs:j5"}
+    assert names == {"joint_offset:j3", "joint_springs:j2", "joint_springs:j3", "joint_springs:j5"}
     assert found.verdict == "named"
     assert 1e6 * found.steps[-1].heldout_rms < 30.0
+
+
+@pytest.mark.parametrize("degrees", [0.05, 0.1])
+def test_a_zero_that_is_off_by_little_is_named_by_its_one_number(
+    tmp_path: Path, degrees: float
+) -> None:
+    """Neither by the six of a frame, nor by waves over the joint's angle."""
+    a = poses(60, 13)
+    arm = Arm(compliance=np.array([0.0, 1 / 6e5, 1 / 4e5, 0.0, 1 / 8e4, 0.0]))
+    x = tracked(arm.stands(a)[0]) + 2e-5 * np.random.default_rng(2).normal(size=(60, 3))
+    off = a - np.radians(degrees) * np.eye(6)[2]
+    data = sk.read(write(tmp_path, off, x, FIT))
+    found = sk.explain(Model(sk.load_robot(data.robot, base="base", tool="tool")), data)
+    assert isinstance(found, Explained) and found.verdict == "named"
+    names = {item.effect.id for item in found.findings}
+    assert names == {"joint_offset:j3", *(f"joint_springs:j{k}" for k in (2, 3, 5))}
+    (zero,) = [p for p in found.final.parameters if p.effect.name == "joint_offset"]
+    assert abs(zero.internal - np.radians(degrees)) < 4.0 * zero.internal_std < 4e-4

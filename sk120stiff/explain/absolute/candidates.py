@@ -37,9 +37,12 @@ from sk120stiff.robot import Robot
 
 FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
+FAR = (
+    5.0  # times the usual size of an error of a frame, beyond which it is as large as it was found
+)
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)
-_ONLY_LOADED = ("zero_offset", "joint_offset", "link_length")
+_ONLY_LOADED = ("zero_offset", "link_length")
 _BESIDE_FRAME = "reading_rotation"  # of displacements alone; positions have a frame for it
 COMPLIANCE = "compliance"  # the family of all that yields
 
@@ -54,7 +57,7 @@ def candidates_at(
 ) -> tuple[Effect, ...]:
     """Every effect at every place that could show in these positions and is not `present`.
 
-    Errors of joint frames hold those of joint offsets and link lengths.
+    Errors of joint frames hold those of link lengths, and of zeros, which one number tells.
     """
     told = options_of(readings)
     loaded = bool(readings.wrench.any())
@@ -130,10 +133,9 @@ def linear_at(
     hidden: list[Effect] = []
     for effect in effects:
         size = usual_sizes(effect, off)
-        if isinstance(effect, JointFrame) and effect.id in fitted:  # however far it is off
-            size = np.maximum(
-                size, np.abs([known[f"{effect.id}.{s.name}"] for s in effect.parameters])
-            )
+        if isinstance(effect, JointFrame) and effect.id in fitted:
+            far = np.abs([known[f"{effect.id}.{spec.name}"] for spec in effect.parameters])
+            size = np.where(far > FAR * size, far, size)
         block = beside(Q, white(found[effect] * size))
         if not block.any():
             hidden.append(effect)

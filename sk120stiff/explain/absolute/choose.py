@@ -63,7 +63,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         left = linear.left_out(chosen, before)
         if gained > threshold(linear) and linear.left_out(others, after) < left:
             chosen, dropped = others, fallen
-    return Chosen(_beside_frames(linear, chosen, dropped), dropped)
+    return Chosen(_beside_frames(linear, _zeros(linear, chosen), dropped), dropped)
 
 
 def nothing_named(linear: Linear, found: Chosen) -> Chosen:
@@ -159,6 +159,24 @@ def _together(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
     every = enumerate(linear.candidates)
     springs = tuple(e for e, effect in every if effect.joint_spring and e not in chosen)
     return [step for step in (frames, springs, (*frames, *springs)) if len(step) > 1]
+
+
+def _zeros(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
+    """A joint's zero in the place of a frame, where it is the likelier and poses left out agree.
+
+    Beside the large gap at the start six numbers may take off more than one; in the end one tells.
+    """
+    zeros = [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_offset"]
+    for e in [frame for frame in _frames(linear) if frame in chosen]:
+        noise, rest = linear.noise(chosen), linear.less(chosen, e)
+        others = {z: linear.score((*rest, z), noise) for z in zeros if z not in chosen}
+        best = max(others, key=lambda z: others[z], default=e)
+        if best == e or others[best] < linear.score(chosen, noise):
+            continue
+        other = tuple(best if c == e else c for c in chosen)
+        if _confirmed(gain(linear, other, best), linear):
+            chosen = other
+    return chosen
 
 
 def _beside_frames(
