@@ -23,6 +23,10 @@ FAULTS: tuple[Fault, ...] = (
         a_shift_counted_with_what_the_fit_has=("free = -(self.first.T @ near)", "free = (self.first.T @ near)"),
     ),
     *of(
+        "explain/judge/selection_uncertainty.py", *tests("explain", "selection_uncertainty"),
+        more_terms_that_nothing_asks_for=("other.score > now.score + REFUTED", "other.score > np.inf"),
+    ),
+    *of(
         "explain/candidates/linearised.py", *tests("explain", "linearised"),
         sensitivities_of_other_readings=("self.measurements is not fit.problem.measurements or ", ""),
     ),

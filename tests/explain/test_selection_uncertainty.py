@@ -11,6 +11,7 @@ from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncert
 from sk120stiff.explain.select.stepwise import select, with_effects
 from tests.explain.readings import base_fit, hidden
 from tests.hidden.generator.causes_joint import LostMotion
+from tests.hidden.generator.causes_sensor import ReadingDrift
 
 
 def test_a_name_that_does_not_fit_widens_no_error():
@@ -31,3 +32,23 @@ def test_a_name_that_does_not_fit_widens_no_error():
         found, [alone]).selection_uncertainty).all()  # fmt: skip
     moved = np.abs(base.x - beside.x[: len(base.x)]).max()  # friction leaves what springs alone do
     assert beside.selection_uncertainty.max() < 0.1 * moved
+
+
+def test_a_law_with_more_terms_that_nothing_asks_for_widens_no_error():
+    """A drift that goes on, and the same with three that die away: it leaves less in any case."""
+    drift = {"x": 8e-6, "y": -6e-6, "z": 9e-6}
+    base = base_fit(hidden(ReadingDrift("tracker", drift)))
+    cause = effect(base.model.robot, "reading_drift", "tracker")
+    settled = select(
+        base.model, base.problem.measurements, base.problem.noise, [cause], max_effects=1,
+        alpha=0.01,
+    )  # fmt: skip
+    found = with_effects(settled, [cause])
+    evidence = Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})
+    wide = with_selection_uncertainty(found, [Finding(cause, (), (), evidence)])
+    own = [k for k, p in enumerate(wide.parameters) if p.effect == cause]
+    assert len(own) == 3
+    for k in own:
+        p = wide.parameters[k]
+        assert abs(p.internal - drift[p.spec.name[-1]]) < 4.0 * p.internal_std
+        assert p.internal_std < 2.0 * found.final.parameters[k].internal_std

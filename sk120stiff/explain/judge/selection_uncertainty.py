@@ -108,15 +108,25 @@ def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[list[Effe
 
 
 def _other_laws(found: Selection, effect: int) -> list[Effect]:
-    """Laws of one effect that the readings do not refute, the likeliest first."""
+    """Laws of one effect that the readings do not refute, the likeliest first.
+
+    A law that has all of the named one and more leaves less in any case: it counts where the
+    evidence does not speak against what it has beyond.
+    """
     regression, sums, now = found.regression, found.regression.sums(), found.scored
-    laws = regression.laws[effect]
+    laws, own = regression.laws[effect], _quantities(regression.candidates[effect])
     fits: dict[Effect, float] = {}
     for k, law in enumerate(laws):
         other = score_set(
             regression, sums, now.effects, start=now.by_variant | {effect: k}, only=()
         )
+        if own < _quantities(law) and other.score > now.score + REFUTED:
+            continue
         fits[law] = min(other.solved.rss, fits.get(law, np.inf))
     most = now.solved.rss + REFUTED * unit(regression, now)
     near = [law for law in fits if law != laws[0] and fits[law] < most]
     return sorted(near, key=lambda law: fits[law])[:LAWS]
+
+
+def _quantities(law: Effect) -> frozenset[str]:
+    return frozenset(spec.quantity or spec.name for spec in law.parameters)
