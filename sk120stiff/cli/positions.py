@@ -73,10 +73,11 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             f"{item.effect.sentence()} [{item.effect.id}] ({answer.chance_of(item)}, takes off "
             f"{100 * item.gain.share:.1f} %)"
         )
-        shown += [
-            f"  or {other} ({item.kind_of(other)}; {likely(answer.probabilities.get(other, 0.0))})"
-            for other in item.alternatives
-        ]
+        for other in item.alternatives:
+            share = likely(answer.probabilities.get(other, 0.0))  # of one class nothing tells it
+            shown.append(
+                f"  or {other} ({item.kind_of(other)}{'' if other in item.exact else f'; {share}'})"
+            )
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
     whole = np.isfinite(answer.steps[-1].heldout_distance)
