@@ -86,7 +86,7 @@ def test_a_spring_and_the_torsion_of_a_link_along_its_axis_are_one(tmp_path: Pat
     assert found.chance_of(item) == "P > 0.99"
     effects = found.save(tmp_path / "out")["effects"]
     assert effects[1]["exact_aliases"] == list(item.exact) == effects[1]["alternatives"]
-    assert "One in all such readings with: " in found.report().html()
+    assert "Always the same in such readings: " in found.report().html()
     spring, torsion, bending = (
         found.linear.candidates[_place(found, name)]
         for name in ("joint_springs:j6", "link_torsion:l5", "link_bending:l3")

@@ -62,7 +62,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         f"{item.effect.sentence()} (`{item.effect.id}`) {answer.chance_of(item)}; takes off "
         f"{100 * item.gain.share:.1f} % of the held-out gap beside the others."
         + (f" Not told from: {', '.join(item.others)}." if item.others else "")
-        + (f" One in all such readings with: {', '.join(item.exact)}." if item.exact else "")
+        + (f" Always the same in such readings: {', '.join(item.exact)}." if item.exact else "")
         for item in answer.findings
     ]
     where = "loads" if answer.displaced else "poses"
