@@ -15,7 +15,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.data_checks.correction import Correction
 from sk120stiff.data_checks.sheet import Sheet
 
-QUARTERS = (1, 2, 3)
+QUARTERS = (1, 2, 3)  # of a turn, as frames and conventions of controllers differ
 ROUNDING = 1e-12  # of a cosine
 COARSE, FINE = np.radians(15.0), np.radians(0.5)  # steps in which a turn is looked for
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff.effects import Effect, ParameterSpec
-from sk120stiff.errors import require, two_digits
+from sk120stiff.errors import require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +42,7 @@ class Parameter:
     origin: str = ""
 
     def __repr__(self) -> str:
-        error = "" if self.std is None else f" ± {two_digits(self.std)}"
+        error = "" if self.std is None else f" ± {self.std:.2g}"
         return f"<Parameter {self.name} = {self.value:.4g}{error} {self.spec.unit}>"
 
     @property
