@@ -75,7 +75,11 @@ def unsettled(answer: Explanation) -> str:
     """What may be missing where nothing is named, in words."""
     others = [each for each in probabilities(answer) if each.kind != "none"]
     said = f"its probability is {nothing(answer):.2f}"
-    return f"{said}, that of {others[0].name} {others[0].probability:.2f}" if others else said
+    if not others:
+        return said
+    unnamed = others[0].kind == SOMETHING_ELSE
+    name = "a cause without a name" if unnamed else others[0].name
+    return f"{said}, that of {name} {others[0].probability:.2f}"
 
 
 def nothing_in_its_place(finding: Finding) -> float:
