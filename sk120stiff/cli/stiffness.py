@@ -152,7 +152,7 @@ def _with(value: float, std: float | None, factor: float) -> object:
 
 
 def _cells(std: Array) -> list[str]:
-    return [f"{two_digits(x * 1e6)}" if np.isfinite(x) else "?" for x in std]
+    return [two_digits(x * 1e6) if np.isfinite(x) else "?" for x in std]
 
 
 def _seen(values: Array) -> Array:

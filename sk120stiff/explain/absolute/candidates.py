@@ -37,9 +37,7 @@ from sk120stiff.robot import Robot
 
 FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
-FAR = (
-    5.0  # times the usual size of an error of a frame, beyond which it is as large as it was found
-)
+FAR = 5.0  # times the usual size of a frame's error, beyond which it is as large as was found
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)
 _ONLY_LOADED = ("zero_offset", "link_length")

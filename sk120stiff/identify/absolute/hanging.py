@@ -16,9 +16,11 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Elastic
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.joint_springs import JointSprings
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError, two_digits
 from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
@@ -115,10 +117,10 @@ class _Sag:
         robot, white = model.robot, problem.of_channels.apply
         size = float(np.linalg.norm(robot.gravity_in_base))
         present = {effect.id for effect in model.effects}
-        beside = [
-            kind(where) for kind in (JointFrame, TransmissionError) for where in kind.places(robot)
-        ]
-        springs = [JointSprings(where) for where in JointSprings.places(robot)]
+        beside, springs = (
+            [kind.at(robot, where, Options()) for kind in kinds for where in kind.places(robot)]
+            for kinds in ((JointFrame, TransmissionError), (JointSprings,))
+        )
         wide = model
         for effect in (*(each for each in beside if each.id not in present), *springs):
             wide = wide + effect
@@ -129,7 +131,7 @@ class _Sag:
             return np.asarray(white(gap)), np.asarray(white(slope))
 
         gap, slope = columns(wide)
-        Q = np.asarray(np.linalg.qr(slope[:, ~own])[0])
+        Q = orthonormal(slope[:, ~own], ROUNDING)
         ways = [size * axis for axis in (*np.eye(3), np.zeros(3))]
         parts = [columns(wide.under(way))[1][:, own] for way in ways]
         whole = np.column_stack([*parts, gap])

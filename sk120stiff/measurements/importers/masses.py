@@ -31,7 +31,8 @@ def with_masses(
         called = [k for k, name in enumerate(names) if _plain(name) in _UNMISTAKEN]
     elif len(heavy) == 1:
         called = heavy
-    if len(called) == 1 and not any(known and known[0] == "fx" for known in out):
+    loads = [k for k, known in enumerate(out) if known and known[0] in ("fx", "load", "payload")]
+    if len(called) == 1 and set(loads) <= set(called):
         (k,) = called
         out[k] = "payload", MASSES.get(units[k] or "", 1.0)
         units[k] = "kg" if units[k] in MASSES else units[k]

@@ -58,3 +58,10 @@ def test_of_several_masses_the_one_that_is_called_so(tmp_path: Path) -> None:
     assert with_masses(["m1", "m2"], [None, None], ["kg", "kg"]) == ([None, None], ["kg", "kg"])
     assert with_masses(["fx", "mass"], [("fx", 1.0), None], ["N", "kg"])[0][1] is None
     assert with_masses(["load"], [("load", 1.0)], [None]) == ([("load", 1.0)], [None])
+
+
+def test_a_mass_beside_a_load_that_is_counted_stays_what_it_was() -> None:
+    names = ["load", "tool mass"]
+    assert with_masses(names, [("load", 1.0), None], [None, "kg"])[0] == [("load", 1.0), None]
+    both = [("payload", 1.0), None]
+    assert with_masses(["payload", "m2"], both, [None, "kg"])[0] == both
