@@ -127,7 +127,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
         springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
         gravity_along_one_axis_alone=("ways = [size * axis for axis in (*np.eye(3), np.zeros(3))]", "ways = [size * axis for axis in (*(np.eye(3)[[2, 2, 2]]), np.zeros(3))]"),
         a_load_taken_for_weight=("by_axis = along[:3] - along[3]", "by_axis = along[:3]"),
-        waves_taken_for_sag=("for kind in (JointFrame, TransmissionError) for", "for kind in (JointFrame,) for"),
+        waves_taken_for_sag=("for kinds in ((JointFrame, TransmissionError), (JointSprings,))", "for kinds in ((JointFrame,), (JointSprings,))"),
         what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
     ),
     *of(
