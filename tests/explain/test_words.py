@@ -155,7 +155,11 @@ def test_suspects_are_told_with_what_they_gain() -> None:
 
 @pytest.mark.parametrize("others", [(), ("a:c",)])
 def test_what_brings_the_most_has_its_error_and_all_its_names(others: tuple[str, ...]) -> None:
-    named = (SimpleNamespace(effect=SimpleNamespace(id="a:b"), alternatives=others),)
+    named = (
+        SimpleNamespace(
+            effect=SimpleNamespace(id="a:b", bends_a_spring=False), alternatives=others
+        ),
+    )
     told = next_step(Answered(findings=named, budget=(Share("a:b", 4.61e-4, 1.35e-4),)))
     assert f"{' or '.join(('a:b', *others))} brings the most" in told
     assert "461 µm (± 135 µm) rms per axis" in told
@@ -168,12 +172,19 @@ def test_what_brings_the_most_has_its_error_and_all_its_names(others: tuple[str,
         ("reading_rotation:tracker", (), "how the tracker stood"),
         ("force_scale:sensor", ("joint_tilt:j1",), "look there first if the arm is to be mended"),
         ("joint_tilt:j1", (), "look there first if the arm is to be mended"),
+        ("gear_hardening:j1", (), "that is how such gears are, no fault of the arm"),
+        ("gear_hardening:j1", ("lost_motion:j1",), "look there first if the arm is to be mended"),
     ],
 )
 def test_an_instrument_is_no_part_of_an_arm_to_be_mended(
     own: str, others: tuple[str, ...], advice: str
 ) -> None:
-    named = (SimpleNamespace(effect=SimpleNamespace(id=own), alternatives=others),)
+    named = (
+        SimpleNamespace(
+            effect=SimpleNamespace(id=own, bends_a_spring=own.startswith("gear_hardening")),
+            alternatives=others,
+        ),
+    )
     told = next_step(Answered(findings=named, budget=(Share(own, 1e-5, 1e-6),)))
     assert advice in told
     assert ("no fault of the arm" in told) == ("mended" not in advice)

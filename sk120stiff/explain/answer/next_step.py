@@ -20,6 +20,7 @@ CHECKED = {
     "sensor": "no fault of the arm; check how the force sensor was calibrated and mounted",
     "tracker": "no fault of the arm; check how the tracker stood and was aligned",
 }
+BY_NATURE = "that is how such gears are, no fault of the arm"
 REPEATS = "repeat a few readings (same pose and load), so that the noise is known from them"
 LARGE = 2.0  # times what noise alone makes
 VAGUE = 0.5  # of its size, by which it is known, from where on a share is no advice
@@ -163,6 +164,8 @@ def _largest(answer: Explanation) -> list[str]:
     most = "what was named" if first is mine[0] else "what is well known"
     places = {name.partition(":")[2] for name in names}
     advice = CHECKED.get(places.pop()) if len(places) == 1 else None
+    if len(names) == 1 and named[first.name].effect.bends_a_spring:
+        advice = BY_NATURE
     return [
         f"At the measured loads {' or '.join(names)} brings the most of {most}, "
         f"{microns(first.rms)}{error} rms per axis: "
