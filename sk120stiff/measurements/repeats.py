@@ -7,6 +7,7 @@ reached once from below and once from above was not repeated: what differs there
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -21,6 +22,7 @@ Zero = Literal["shared", "separate"]
 
 STRONG = 10.0  # twice the log-likelihood by which noise that grows must win
 ENOUGH = 10  # degrees of freedom; fewer leave σ open by a quarter or more
+ALIKE = 4.0  # times the usual distance of repeats, within which one bears out the other
 _REACH = (-7.0, 7.0)  # natural logarithm of growth·|d|/σ at the usual displacement
 
 
@@ -81,6 +83,34 @@ def repeated(
     ratio = float(np.exp(best.x)) / usual
     sigma = float(np.sqrt(_left(usable, cell, ratio, separate)[0] / freedom))
     return Repeated(sigma, min(ratio * sigma, 0.99), freedom)
+
+
+def borne_out(measurements: Measurements) -> Mask:
+    """(N,) readings that were taken again and came out alike, whatever a model makes of them.
+
+    Alike is what lies no farther apart, along every axis, than `ALIKE` times what repeats usually
+    do; where less than `ENOUGH` distances tell that, nothing is borne out.
+
+    Args:
+        measurements: Readings with displacements.
+    """
+    out = np.zeros(measurements.n_readings, dtype=bool)
+    cell = cells_of(measurements)
+    order = np.argsort(cell, kind="stable")
+    groups = np.split(order, np.flatnonzero(np.diff(cell[order])) + 1)
+    pairs = [pair for rows in groups for pair in combinations(rows.tolist(), 2)]
+    if not pairs:
+        return out
+    first, second = np.array(pairs).T
+    apart = np.abs(measurements.moved[first] - measurements.moved[second])
+    apart[~(measurements.read[first] & measurements.read[second])] = np.nan
+    told = np.isfinite(apart)
+    if told.sum() < ENOUGH:
+        return out
+    usual = 1.4826 * float(np.median(apart[told]))
+    near = told.any(axis=1) & (~told | (apart <= ALIKE * usual)).all(axis=1)
+    out[first[near]] = out[second[near]] = True
+    return out
 
 
 def cells_of(m: Measurements) -> Integers:

@@ -11,6 +11,7 @@ from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.repeats import borne_out
 from tests.explain.readings import NOISE, SIGMA, answered, base_fit, hidden
 
 WAY = np.array([0.6, -0.5, 0.62])
@@ -23,9 +24,10 @@ def set_aside(readings: Measurements, noise: NoiseModel = NOISE) -> tuple[list[i
     regression = regression_at(base, candidates, ("joint_springs",), alpha=0.01)
     whitener, courses = base.problem.whitener, warm_ups(base.problem.load_cases)
     assert courses
+    certain = borne_out(readings)
     return (
-        outlying_rows(regression, whitener).tolist(),
-        outlying_rows(regression, whitener, courses).tolist(),
+        outlying_rows(regression, whitener, (), certain).tolist(),
+        outlying_rows(regression, whitener, courses, certain).tolist(),
     )
 
 
@@ -180,3 +182,31 @@ def test_they_are_those_that_dense_least_squares_finds_one_after_the_other(
         out.append(worst)
     assert len(out) > 1
     assert outlying_rows(regression, whitener).tolist() == sorted(out)
+
+
+@pytest.mark.parametrize("rows", [[3, 11, 17], [0, 8]])
+def test_slips_of_a_small_campaign_are_not_hidden_by_a_catalogue_that_follows_single_readings(
+    rows: list[int],
+) -> None:
+    """Ten poses, three readings each: more columns than rows, and half a millimetre in three."""
+    readings = hidden(poses=10, loads=3, stated=False, seed=4)
+    answer = answered(base_fit(readings).model, off(readings, rows, 60 * SIGMA))
+    assert list(answer.set_aside) == rows
+    assert answer.verdict == "none"
+
+
+def test_what_came_twice_did_not_slip() -> None:
+    """Both readings of a repeated load off alike: that is the arm, or its load, but no slip."""
+    once = hidden(poses=12, loads=5)
+    pairs = once.select(np.repeat(np.arange(once.n_readings), 2))
+    moved = np.array(pairs.displacement)
+    moved += SIGMA * np.random.default_rng(2).normal(size=moved.shape)
+    twice = [60, 61]
+    moved[twice] += 60 * SIGMA * WAY
+    off_alike = replace(pairs, displacement=moved)
+    assert borne_out(off_alike)[twice].all()
+    assert not set(set_aside(off_alike)[0]) & set(twice)
+    moved[twice[1]] -= 60 * SIGMA * WAY
+    off_once = replace(pairs, displacement=moved)
+    assert not borne_out(off_once)[twice].any()
+    assert set_aside(off_once)[0] == twice[:1]

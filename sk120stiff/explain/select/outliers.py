@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
-from itertools import takewhile
+from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import chi2
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.measurements import FormWhitener, Whitener
 from sk120stiff.measurements.poses import rows_by_label
@@ -25,7 +25,7 @@ ALONE = 8.0  # of what no catalogue explains: no smooth cause is so much at one 
 LEAST_LEFT = 0.05  # share of a row that the fit must leave, if the row is to tell of the noise
 ROUNDING = 1e-10  # of the most that a shift has of its own
 LARGEST_SHARE = 0.06  # more than this is no crowd of outliers but a missing cause
-MANY = 0.12  # the same where each is far off, and nothing is left without them
+MANY = 0.125  # the same where each is far off, and nothing is left without them
 CLEAN = 1e-3  # probability that noise alone leaves more
 
 
@@ -33,6 +33,7 @@ def outlying_rows(
     regression: Regression,
     whitener: Whitener | FormWhitener,
     courses: Sequence[Array] = (),
+    borne_out: Mask | None = None,
 ) -> Index:
     """Rows (readings) whose own shift would be significant beyond the whole catalogue together.
 
@@ -54,11 +55,12 @@ def outlying_rows(
         regression: The readings linearised at the base model.
         whitener: Their noise.
         courses: (N, 3, 3) each: what a drift that dies away makes of the readings, along x, y, z.
+        borne_out: (N,) readings that were taken again and came out alike: none of them slipped.
     """
     X, prior = _whole_catalogue(regression)
     y = regression.y
     axes = np.bincount(whitener.reading)  # (N,) how many were read
-    shifts = _shift_columns(whitener, regression.group)
+    shifts = _shift_columns(whitener, regression.group, borne_out)
     known = regression.sigma_known
     found = _one_by_one(_peeled(X, prior, y, shifts, known), shifts)
     if found is None:
@@ -80,10 +82,40 @@ def outlying_rows(
     return min(ways, key=lambda way: way[0])[1]
 
 
+def standing_apart(
+    regression: Regression,
+    whitener: Whitener | FormWhitener,
+    effects: Iterable[int],
+    borne_out: Mask | None = None,
+) -> Index:
+    """Rows far off a model that holds all others, beyond any noise that they have.
+
+    The whole catalogue together may follow single readings of a small campaign, and hide that they
+    are off. Beside the few effects of a model they are not hidden; it may lack a smooth cause, so
+    each must be far off, and nothing else left.
+
+    Args:
+        regression: The readings linearised at the model.
+        whitener: Their noise.
+        effects: Of the model, each by its usual law.
+        borne_out: (N,) readings that were taken again and came out alike.
+    """
+    columns = np.concatenate([regression.base, *(regression.columns[e] for e in effects)])
+    held = _held_to_what_is_plausible(regression, columns)
+    shifts = _shift_columns(whitener, regression.group, borne_out)
+    clean = chi2.isf(CLEAN, len(regression.y)) if regression.sigma_known else None
+    return _far_off(partial(_peeled, *held, regression.y, shifts), shifts, clean).rows
+
+
 def _whole_catalogue(regression: Regression) -> tuple[Array, Array]:
     """Columns (R, P) of base and catalogue, and how firmly each (P,) is drawn towards zero."""
     # one law of each effect: all of them together would follow any single reading
     columns = np.concatenate([regression.base, *regression.columns])
+    return _held_to_what_is_plausible(regression, columns)
+
+
+def _held_to_what_is_plausible(regression: Regression, columns: Index) -> tuple[Array, Array]:
+    """Columns (R, P), and how firmly each (P,) is drawn towards zero; those of the base are not."""
     X = regression.X[:, columns]
     prior = 3.0 / np.maximum(regression.plausible[columns], 1e-300)
     prior[: len(regression.base)] = 0.0
@@ -127,7 +159,8 @@ class _Shifts(NamedTuple):
     Attributes:
         readings: (g, n) of g poses that have as many.
         rows: (g, r) of these poses; whitening mixes no others.
-        columns: (g, r, n, 3) shift of each reading along x, y, z; zero where that was not read.
+        columns: (g, r, n, 3) shift of each reading along x, y, z; zero where that was not read, and
+            of readings that cannot have slipped.
     """
 
     readings: Index
@@ -172,9 +205,11 @@ def _far_off(
         found = _one_by_one(peel(True), shifts, far, MANY)
         if found is not None and found.left <= clean:
             return found
-    # Several hide each other: the last that stood far out counts, however many are taken before.
+    # Several hide each other, also by the noise that is made of them: the last that stood far out
+    # of what is left without it counts, however many are taken before.
     states = list(_as_many(peel(False), shifts, MANY))
-    last = max((k + 1 for k, state in enumerate(states) if state.next > ALONE), default=0)
+    out = (before.next * before.noise / after.noise for before, after in pairwise(states))
+    last = max((k for k, far in enumerate(out, start=1) if far > ALONE), default=0)
     if last < len(states) and states[last].next <= LIMIT:
         return states[last]
     found = None if clean is None else _one_by_one(states, shifts, far)
@@ -258,7 +293,9 @@ class _Half:
         return new
 
 
-def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[_Shifts]:
+def _shift_columns(
+    whitener: Whitener | FormWhitener, pose: Index, borne_out: Mask | None = None
+) -> list[_Shifts]:
     """The shifts of all readings. Whitening mixes rows of one pose (R,) only."""
     count, reading = whitener.n_readings, whitener.reading
     numbers = rows_by_label(pose)  # of each pose
@@ -269,6 +306,8 @@ def _shift_columns(whitener: Whitener | FormWhitener, pose: Index) -> list[_Shif
     width = int(position.max(initial=0)) + 1
     unit = np.zeros((count, 3, width, 3))
     unit[np.arange(count), :, position, :] = np.eye(3)
+    if borne_out is not None:
+        unit[borne_out] = 0.0
     white = whitener.apply(unit.reshape(count, 3, -1)).reshape(len(reading), width, 3)
     alike: dict[tuple[int, int], list[int]] = {}
     for k, (own, rows) in enumerate(zip(members, numbers, strict=True)):

@@ -16,11 +16,12 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search, exchanged
-from sk120stiff.explain.select.outliers import outlying_rows
+from sk120stiff.explain.select.outliers import outlying_rows, standing_apart
 from sk120stiff.explain.select.own_sizes import own_sizes, price_of_factors
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.identify import Fit, Problem, fit, solve, solve_near
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.repeats import borne_out
 from sk120stiff.model import Model
 
 TRIED = 1  # models whose fit may be refused before smaller ones are tried
@@ -93,16 +94,25 @@ def select(
     ids = tuple(effect.id for effect in model.effects)
     regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior, near=near)
     at_base = regression.linearised
-    slow = warm_ups(base.problem.load_cases)
-    outliers = outlying_rows(regression, base.problem.whitener, slow)
-    if len(outliers):
+    slow, certain = warm_ups(base.problem.load_cases), borne_out(measurements)
+    outliers = outlying_rows(regression, base.problem.whitener, slow, certain)
+
+    def without(rows: Index) -> tuple[Fit, Regression]:
         keep = np.ones(measurements.n_readings, dtype=bool)
-        keep[outliers] = False
-        base = fit(model, measurements.select(keep), noise=noise)
-        regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior)
+        keep[rows] = False
+        fitted = fit(model, measurements.select(keep), noise=noise)
+        return fitted, regression_at(fitted, candidates, ids, alpha=alpha, prior=prior)
+
+    if len(outliers):
+        base, regression = without(outliers)
     base, regression = with_own_sizes(base, regression)
-    whole = base.problem.whitener.logdet + price_of_factors(base.problem.noise.form)
     final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
+    if not len(outliers):
+        outliers = standing_apart(regression, base.problem.whitener, chosen, certain)
+        if len(outliers):
+            base, regression = with_own_sizes(*without(outliers))
+            final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
+    whole = base.problem.whitener.logdet + price_of_factors(base.problem.noise.form)
     score = score_set(regression, regression.sums(), chosen).score
     numbers = np.log(float(measurements.read.sum()))
     total = score + whole + numbers * float(measurements.read[outliers].sum())
