@@ -227,8 +227,16 @@ def load_case(
     *,
     point: ArrayLike | None = None,
     force_point: ArrayLike | None = None,
+    absolute: bool = False,
 ) -> LoadCases:
     """Readings made of coordinates (N, n) and base-axes wrenches (N, 6) alone.
+
+    Args:
+        robot: The robot.
+        a, wrench: Coordinates and loads.
+        point, force_point: The measured and the loaded point (3,), tool frame [m].
+        absolute: Where the point stands is asked, with all that the weight does in gears, and not
+            how far the load moves it.
 
     Raises:
         InputError: Wrenches of another shape, or not finite.
@@ -252,6 +260,7 @@ def load_case(
         branch=np.ones(count),
         pose=np.arange(count),
         poses=tuple(str(k + 1) for k in range(count)),
+        absolute=absolute,
     )
 
 

@@ -240,7 +240,8 @@ def _step(
 
 def _standing(model: Model, a: Array, load: Array, point: Array, target: _Target) -> Standing:
     try:
-        rest = model.solve(load_case(model.robot, a, load, point=point)).rest.screws
+        at = load_case(model.robot, a, load, point=point, absolute=True)
+        rest = model.solve(at).rest.screws
     except Refusal:
         if len(a) == 1:
             return Standing(np.full((1, 3), np.nan), np.full((1, 3), np.nan))

@@ -142,7 +142,7 @@ def _derivatives(
     """Rows that have an equilibrium, and (k, 3, P) of where they stand by the internal values."""
     for begin in range(0, len(a), BLOCK):
         rows = np.arange(begin, min(begin + BLOCK, len(a)))
-        load_cases = load_case(physical.robot, a[rows], load[rows], point=at)
+        load_cases = load_case(physical.robot, a[rows], load[rows], point=at, absolute=True)
         try:
             solution = physical.solve(load_cases)
         except Refusal:

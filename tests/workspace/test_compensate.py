@@ -1,10 +1,12 @@
 """Compensation, checked by MuJoCo and by the model's own equilibrium."""
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
+from sk120stiff.effects import effect
 from sk120stiff.errors import InputError
-from sk120stiff.model import base_model, joint_spring_model
+from sk120stiff.model import Model, base_model, joint_spring_model
 from sk120stiff.robot import load_robot
 from sk120stiff.workspace import compensate, standing
 from tests.oracles.mujoco_sk120 import deflect_sk120
@@ -90,6 +92,23 @@ def test_weight_and_wrong_geometry_are_corrected() -> None:
     found = compensate(model, POSES, np.zeros(6))
     assert found.before.distance.min() > 1e-4  # it sags
     assert found.after.distance.max() < 1e-10
+
+
+def test_the_weight_turns_a_gear_with_play_and_that_is_corrected_too() -> None:
+    """A load that pulls the way the weight does finds the flank taken up, and the arm off by it."""
+    half, joint = 3e-4, 1
+    source = six_axis_arm()
+    robot, arm = load_robot(source), pin.buildModelFromXML(source)
+    play = effect(robot, "lost_motion", robot.actuated[joint])
+    model = (Model(robot) + play).with_values(np.array([half]))
+    found = compensate(model, POSES, np.zeros(6))
+    for k, a in enumerate(POSES):
+        weight = -pin.computeGeneralizedGravity(arm, arm.createData(), a)[joint]
+        stands = a + half * np.sign(weight) * np.eye(6)[joint]
+        way = robot.placement(stands)[:3, 3] - robot.placement(a)[:3, 3]
+        assert np.linalg.norm(way) > 5e-5
+        np.testing.assert_allclose(found.before.away[k], way, atol=1e-9)
+    assert found.after.distance.max() < 1e-9
 
 
 def test_what_cannot_be_corrected_is_told() -> None:

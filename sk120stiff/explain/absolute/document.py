@@ -23,10 +23,11 @@ from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_resu
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import Calibration, known_model
+from sk120stiff.identify.absolute.not_named import beside_not_named
 from sk120stiff.identify.absolute.remainder import remainder_entry
 from sk120stiff.identify.absolute.words import findings, gap_sentence, unseen
 from sk120stiff.measurements import write_measurements
-from sk120stiff.model import write_model
+from sk120stiff.model import Model, write_model
 from sk120stiff.model.predicted import predict_channels, prediction_table
 
 SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
@@ -104,19 +105,25 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
 def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) -> dict[str, Any]:
     """Write verdict, model and gaps, all in one moment; the content of verdict.json."""
     document = verdict_of_positions(answer)
-    fitted = replace(known_model(answer.final), provenance=dict(provenance))
+    fitted = _known(answer, answer.final, provenance)
     readings = replace(answer.readings, use=answer.readings.use & ~answer.final.wild)
     predicted = predict_channels(fitted, readings)
     with replacing_results(out):
         write_model(fitted, out / "model.yaml")
         write_atomically(out / "gaps.csv", csv_text(prediction_table(readings, predicted).items()))
         if answer.guess is not None:
-            guess = replace(known_model(answer.guess), provenance=dict(provenance))
-            write_model(guess, out / BEST_GUESS)
+            write_model(_known(answer, answer.guess, provenance), out / BEST_GUESS)
         if answer.following is not None:
             write_measurements(answer.following.readings, out / NEXT_POSES)
         write_atomically(out / VERDICT, as_json_text(document) + "\n")
     return document
+
+
+def _known(answer: Explained, found: Calibration, provenance: Mapping[str, str]) -> Model:
+    """The model of a calibration with its uncertainty, that of springs without a name included."""
+    own = {each.id for each in found.model.effects}
+    wide = beside_not_named(found, [each for each in answer.rigid if each.id not in own])
+    return replace(known_model(wide), provenance=dict(provenance))
 
 
 def _source(final: Calibration) -> str:

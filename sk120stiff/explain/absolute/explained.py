@@ -77,6 +77,7 @@ class Explained:
             as a share of it; None where they are named, or nothing bends the arm.
         dropped: What fitted and is not named, in sentences.
         hidden: Candidates that do not show in these positions at all.
+        rigid: Springs of drives that were looked for and not named.
         remainder: Rms per axis that is left beyond the noise, and its 95 % interval [m]; None: no
             noise is stated, and what is left may be noise.
         chance: Probability of as large a misfit if the noise were all; None as before.
@@ -101,6 +102,7 @@ class Explained:
     springs: float | None
     dropped: tuple[str, ...]
     hidden: tuple[str, ...]
+    rigid: tuple[Effect, ...]
     remainder: Size | None
     chance: float | None
     suspects: tuple[Contender, ...]

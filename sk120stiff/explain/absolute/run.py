@@ -147,6 +147,11 @@ def explain_positions(
         springs=springs_of(linear, found),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
+        rigid=tuple(
+            effect
+            for effect in (*linear.candidates, *hidden)
+            if effect.joint_spring and effect.id not in {each.id for each in final.model.effects}
+        ),
         remainder=left_beyond_noise(final),
         chance=chance,
         suspects=suspects,
