@@ -18,7 +18,8 @@ def branches_by_order(
 
     A pose tells branches if its loads, along one line, rise to a peak and fall from it, and at
     least one on the way down was met on the way up; so must the loads of every direction where a
-    pose was loaded in several, one after the other. Most poses with three loads or more have to.
+    pose was loaded in several, one after the other, and each time where it was loaded again and
+    again. Most poses with three loads or more have to.
 
     Args:
         pose: (N,) number of the pose of each row.
@@ -54,13 +55,33 @@ def _ways_down(force: Array, size: Array) -> Mask | None:
         return alone
     unit = force / size[:, None]
     turns = np.flatnonzero((unit[1:] * unit[:-1]).sum(axis=1) < ONE_WAY) + 1
-    ways = [
-        None if len(rows) < 3 else _way_down(force[rows], size[rows])
+    runs = [
+        run
         for rows in np.split(np.arange(len(size)), turns)
+        for run in np.split(rows, _new_rises(size[rows]))
     ]
+    ways = [None if len(rows) < 3 else _way_down(force[rows], size[rows]) for rows in runs]
     if any(way is None for way in ways):
         return None
     return np.concatenate([way for way in ways if way is not None])
+
+
+def _new_rises(size: Array) -> list[int]:
+    """Rows of loads along one line with which they begin to rise anew after a fall.
+
+    Of equal ones at the foot the last begins the rise: it was put on after the load was off.
+    """
+    slack = SAME * size.max()
+    starts, falling = list[int](), False
+    for row in range(1, len(size)):
+        step = size[row] - size[row - 1]
+        if step < -slack:
+            falling = True
+        elif step > slack and falling:
+            again = row >= 2 and abs(size[row - 1] - size[row - 2]) <= slack
+            starts.append(row - 1 if again else row)
+            falling = False
+    return starts
 
 
 def _way_down(force: Array, size: Array) -> Mask | None:
