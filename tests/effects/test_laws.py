@@ -174,6 +174,17 @@ def test_gear_hardening_in_steps_of_a_data_sheet():
     close(steps(-100, extra_below_120=1e-6, extra_below_240=1e-7), -3 * (120e-6 + 24e-6))
 
 
+def test_gear_that_is_softer_one_way():
+    # 1e-6 rad/(N·m) more below zero: 300 N·m the other way turn it by 300e-6 rad, at 3 m
+    told = GearHardening.options_of({"extra_negative": "rad/(N*m)"})
+    gear = GearHardening.at(boom(), "yaw", told)
+    model = (Model(boom()) + gear).with_public(**{f"{gear.id}.extra_negative": 1e-6})
+    for side, expected in ((100, 0.0), (-100, -3 * 300e-6)):
+        wrench = np.array([0.0, side, 0.0, 0.0, 0.0, 0.0])
+        close(model.predict(load_case(model.robot, NOTHING, wrench))[0], [0, expected, 0])
+    assert "one sign" in gear.sentence()
+
+
 def breaks_of(*names):
     return GearHardening.options_of(dict.fromkeys(names, "rad/(N*m)")).breaks
 

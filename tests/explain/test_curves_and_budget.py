@@ -17,7 +17,7 @@ from sk120stiff.explain.priors import PRIORS, USUAL, price, priors_from
 from sk120stiff.identify import fit
 from sk120stiff.model.budget import shares as error_shares
 from tests.explain.readings import NOISE, answered, hidden
-from tests.hidden.generator.causes_curves import MaxwellSlip, SmoothPlay
+from tests.hidden.generator.causes_curves import MaxwellSlip, Reversible, SmoothPlay
 from tests.hidden.generator.sk120 import sk120
 
 GEARS = Options(
@@ -183,3 +183,27 @@ def test_priors_as_they_are_typed():
     for wrong in ("base_rocking", "base_rocking=1", "base_rocking=x", "rocking=0.5"):
         with pytest.raises(InputError):
             priors_from([wrong])
+
+
+class OneWayGear(Reversible):
+    """A gear that gives way more under negative torque. Sizes: share of its compliance."""
+
+    name = "gear_hardening"
+
+    def curve(self, torque, compliance):
+        return self.size("share") * compliance * np.minimum(torque, 0.0)
+
+
+def test_a_gear_that_is_softer_one_way_is_no_bearing(springs):
+    """The neighbour's bearing tilts about the same axis, and had two stiffnesses to do it with."""
+    readings = hidden(OneWayGear("joint_2_l", {"share": 0.3}), poses=24)
+    answer = answered(springs, readings)
+    (finding,) = answer.findings
+    assert finding.effect.id == "gear_hardening:joint_2_l"
+    assert "torque of one sign" in finding.effect.sentence()
+    (own,) = [p for p in answer.final.parameters if p.effect == finding.effect]
+    spring = answer.final.model.parameter("joint_springs:joint_2_l.stiffness")
+    assert own.internal / spring.internal == pytest.approx(0.3, abs=0.02)
+    whole = whole_size(answer, finding)
+    assert "1.3" in whole.sentence and "times as soft" in whole.sentence
+    assert answer.steps[-1].heldout_rms < 1.2 * np.sqrt(2) * 8e-6

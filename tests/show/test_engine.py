@@ -104,6 +104,7 @@ MODELS = {
         SK120,
         "gear_hardening:joint_2_l",
         GearHardening("joint_3_u", 1.0, breaks=(40.0, 200.0)),
+        GearHardening("joint_1_s", 1.0, sided=True),
         "lost_motion:joint_1_s",
         LostMotion("joint_2_l", 1.0, flanks=(0.0, 60.0), sided=True),
         FrictionHysteresis("joint_3_u", 1.0, reaches=(0.0, 80.0)),

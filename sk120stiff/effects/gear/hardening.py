@@ -21,6 +21,7 @@ from sk120stiff.robot import Robot
 STEPS = (0.06, 0.12, 0.2, 0.3, 0.45, 0.7)
 FIRST = 1  # of them that may be the only one: what gives way at once about no torque is play
 BELOW = "extra_below_"  # extra_below_150: softer by the value of this parameter below 150 N·m
+SIDED = "extra_negative"  # softer by the value of this parameter under negative torque
 
 
 @dataclass(frozen=True)
@@ -37,10 +38,13 @@ class GearHardening(GearEffect):
         e = Σ c_k min(max(τ, −T_k), T_k)
 
     The torques T_k of the steps come from a data sheet; where a search has none, it tries steps
-    over the torques that were measured.
+    over the torques that were measured. And a gear may be softer one way than the other, by c::
+
+        e = c min(τ, 0)
     """
 
     breaks: tuple[float, ...] = ()
+    sided: bool = False
     name: ClassVar[str] = "gear_hardening"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3"
@@ -48,26 +52,41 @@ class GearHardening(GearEffect):
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     also: ClassVar[str] = (
         f"in steps, as data sheets have it: {BELOW}150 in rad/(N*m) is by how much more the gear "
-        "yields while the torque is below 150 N*m; several steps add up"
+        "yields while the torque is below 150 N*m; several steps add up. By direction: "
+        f"{SIDED} in rad/(N*m) is by how much more it yields under negative torque"
     )
     bends_a_spring: ClassVar[bool] = True
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The gear of one joint, with the steps of its data sheet where they are known."""
-        return cls(where, scale_of(robot), breaks=options.breaks)
+        return cls(where, scale_of(robot), breaks=options.breaks, sided=SIDED in options.shape)
 
     @classmethod
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The steps that the names of the parameters tell."""
-        return Options(breaks=torques_told(parameters, BELOW, "break torque"))
+        """The steps that the names of the parameters tell, or the sides."""
+        breaks = torques_told(parameters, BELOW, "break torque")
+        return Options(breaks=breaks, shape=tuple(parameters))
+
+    def sentence(self) -> str:
+        """See `Effect.sentence`."""
+        if self.sided:
+            return f"The gear of {self.where} is stiffer under torque of one sign than the other."
+        return super().sentence()
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Coefficients κ₂ and κ₃, or the extra compliance c_k below each break torque."""
         size = self.scale**-3  # torques grow with the cube of an arm's length, compliances fall
+        unit = "rad/(N*m)"
+        if self.sided:
+            return (
+                ParameterSpec(
+                    SIDED, unit, unit, plausible=1e-4 * size, typical=5e-7 * size,
+                    meaning="extra compliance under negative torque; below zero it is stiffer then",
+                ),
+            )  # fmt: skip
         if self.breaks:
-            unit = "rad/(N*m)"
             return tuple(
                 ParameterSpec(
                     f"{BELOW}{torque:g}", unit, unit, plausible=1e-4 * size, typical=5e-7 * size,
@@ -88,11 +107,13 @@ class GearHardening(GearEffect):
         )  # fmt: skip
 
     def other_laws(self, load_cases: LoadCases) -> tuple[GearHardening, ...]:
-        """The series, one step, two as in most data sheets, or one at each of `STEPS`."""
+        """The series, steps (one, two as in most data sheets, one at each of `STEPS`), sides."""
         largest = self.largest_torque(load_cases)
         steps = tuple(float(f"{share * largest:.3g}") for share in STEPS) if largest > 0.0 else ()
         laws = [(), *((T,) for T in steps[FIRST:]), *combinations(steps, 2), steps]
-        return tuple(replace(self, breaks=own) for own in laws if own != self.breaks)
+        every = [replace(self, breaks=own, sided=False) for own in laws]
+        every.append(replace(self, breaks=(), sided=True))
+        return tuple(law for law in every if law != self)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`. A position has no zero reading to be subtracted."""
@@ -109,12 +130,16 @@ class GearHardening(GearEffect):
 
     def _shapes(self, torque: Array) -> Array:
         """(N, 1, P) elongation per unit of each parameter at torques (N, 1)."""
+        if self.sided:
+            return np.minimum(torque, 0.0)[..., None]
         if self.breaks:
             return np.stack([np.clip(torque, -T, T) for T in self.breaks], axis=-1)
         return np.stack([-torque * np.abs(torque), -(torque**3)], axis=-1)
 
     def _slopes(self, torque: Array) -> Array:
         """(N, 1, P) derivative of `_shapes` by the torque."""
+        if self.sided:
+            return np.asarray(np.heaviside(-torque, 0.5))[..., None]
         if self.breaks:
             return np.stack([1.0 * (np.abs(torque) < T) for T in self.breaks], axis=-1)
         return np.stack([-2.0 * np.abs(torque), -3.0 * torque**2], axis=-1)

@@ -77,7 +77,9 @@ def _loop(fit: Fit, effect: Any) -> Whole | None:
 
 
 def _bend(fit: Fit, effect: Any) -> Whole | None:
-    """How much stiffer the gear is at its largest torque than about none."""
+    """How much stiffer the gear is at its largest torque than about none, or one way."""
+    if effect.sided:
+        return _sided(fit, effect)
     curves = gear_curves(fit, [effect.id])
     if not curves:
         return None
@@ -93,6 +95,23 @@ def _bend(fit: Fit, effect: Any) -> Whole | None:
         "one alone says nothing."
     )
     return Whole("stiffening", ratio, None, "1", said)
+
+
+def _sided(fit: Fit, effect: Any) -> Whole | None:
+    """How much softer the gear is under negative torque than under positive."""
+    parameters = fit.model.parameters
+    extra = sum(p.internal for p in parameters if p.effect == effect)
+    spring = sum(
+        p.internal for p in parameters if p.effect.joint_spring and p.effect.where == effect.where
+    )
+    if not (spring > 0.0 and spring + extra > 0.0):
+        return None
+    ratio = 1.0 + extra / spring
+    said = (
+        f"Spring and gear together: {1e-3 / spring:.4g} kN·m/rad under positive torque, "
+        f"{1e-3 / (spring + extra):.4g} under negative ({ratio:.3g} times as soft)."
+    )
+    return Whole("softening", ratio, None, "1", said)
 
 
 TOLD: dict[str, Callable[[Fit, Any], Whole | None]] = {

@@ -47,6 +47,9 @@ def law_terms(arm: ModelCompliance) -> list[Term] | None:
 def _terms(effect: Elastic, values: Array) -> list[Term] | None:
     if isinstance(effect, Nonlinear):
         return list(chain.from_iterable(_out_of_proportion(effect, values)))
+    if type(effect) is GearHardening and effect.sided:
+        (extra,) = values  # of the negative part, which is half of τ − |τ|
+        return [_term("line", 0.0, extra / 2), _term("size", 0.0, -extra / 2)]
     if type(effect) is GearHardening:  # a law built on it is another law
         sizes = values if effect.breaks else -values
         shapes = [("clip", T) for T in effect.breaks] or [("square", 0.0), ("cube", 0.0)]
