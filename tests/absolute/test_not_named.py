@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import sk120stiff as sk
 from sk120stiff.effects import load_case
@@ -50,3 +51,13 @@ def test_what_was_named_keeps_its_value_and_its_errors(tmp_path: Path) -> None:
             assert 0.999 * own.internal_std <= p.internal_std < 1.5 * own.internal_std
     assert wide.rms == found.final.rms
     assert (wide.form, wide.notes) == (found.final.form, found.final.notes)
+
+
+def test_names_that_do_not_exist_are_refused_for_positions_too(tmp_path: Path) -> None:
+    path = hung(tmp_path, [0.0, 30.0, 60.0])
+    model, data = sk.Model(robot_of(path)), sk.read(path)
+    for wish in (sk.Options(only=("joint_spring",)), sk.Options(exclude=("joint_springs:j9",))):
+        with pytest.raises(sk.InputError, match="joint_spring"):
+            sk.explain(model, data, options=wish)
+    with pytest.raises(sk.InputError, match="no parameter 'nosuch'"):
+        sk.fit(model, data, fix=["nosuch"])

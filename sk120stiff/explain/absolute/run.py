@@ -34,7 +34,7 @@ from sk120stiff.explain.absolute.linear import Linear, everything
 from sk120stiff.explain.absolute.other_poses import NextPoses, elsewhere, never_told, next_poses
 from sk120stiff.explain.absolute.remainder import where_it_lives
 from sk120stiff.explain.findings import Contender
-from sk120stiff.explain.options import Options
+from sk120stiff.explain.options import Options, refuse_unknown
 from sk120stiff.identify import refuse_for_positions, refuse_plan
 from sk120stiff.identify.absolute.calibrate import (
     Calibration,
@@ -51,6 +51,7 @@ from sk120stiff.identify.absolute.remainder import (
     chance_of_noise,
     left_beyond_noise,
 )
+from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -85,6 +86,10 @@ def explain_positions(
         prior=options.prior,
     )
     refuse_plan(readings)
+    places = [(kind, where) for kind in catalogue for where in kind.places(model.robot)]
+    told = options_of(readings)
+    every = [kind.at(model.robot, where, told) for kind, where in places]
+    refuse_unknown(every, options, model, catalogue)
     if holdout is not None and (holdout.absolute is None or holdout.is_plan):
         raise InputError(
             "the held-out readings are no positions", remedy="Hold out readings of the same kind."

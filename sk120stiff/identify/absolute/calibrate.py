@@ -171,7 +171,7 @@ def calibrate(
         model, readings, placed, geometry=geometry, mounted=mounted, catalogue=catalogue
     )
     start, unloaded = loaded(start, readings)
-    kept_back = set(freedom)
+    kept_back = {start.parameter(name).name for name in freedom}
     start = replace(
         start,
         parameters=tuple(
