@@ -9,8 +9,10 @@ import numpy as np
 
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.errors import InputError, listed
+from sk120stiff.identify.absolute.beside_frames import without_springs
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.creeping import creeping
+from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.weighing import pounds
@@ -74,6 +76,10 @@ def fit(
             measurements, noise=noise is not None, method=method != "trf", robust=robust
         )
         readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
+        if readings.wrench.any():
+            rigid = without_springs(model)
+            placed = calibrate(rigid, readings, geometry=False, waves=False, shared=False)
+            refuse_other_forces(placed, readings)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
         alone = np.zeros(len(calibrated.x))
         told = refuse_another_gravity(calibrated, readings)

@@ -44,6 +44,7 @@ from sk120stiff.identify.absolute.calibrate import (
     with_values_of,
 )
 from sk120stiff.identify.absolute.creeping import creeping
+from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.remainder import (
@@ -102,6 +103,7 @@ def explain_positions(
     base = calibrate(
         model, readings, geometry=False, waves=False, shared=False, catalogue=catalogue
     )
+    refuse_other_forces(base, readings)
     hangs = refuse_another_gravity(base, readings)
     tell("searching the catalogue", 0.2)
     seen = base

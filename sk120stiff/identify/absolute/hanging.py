@@ -7,29 +7,24 @@ angles, and no spring pushes.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import nnls
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Elastic
-from sk120stiff.effects.joint_frame import JointFrame
-from sk120stiff.effects.joint_springs import JointSprings
-from sk120stiff.effects.options import Options
-from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError, two_digits
+from sk120stiff.identify.absolute.beside_frames import ROUNDING, beside_frames
 from sk120stiff.identify.absolute.calibrate import Calibration
-from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model
 
 HALF = 0.5  # of the square of what is left, below which another direction must bring it
 BEYOND_DOUBT = 10.0  # logarithm of the odds for it
 AS_WELL = 1.25  # times the square that springs of either sign leave as gravity is stated
 FAR = np.radians(10.0)  # rad between two directions, below which the base is no more than unlevel
 ROUNDS = 30  # of fitting springs and direction in turn
-ROUNDING = 1e-9  # of the largest number, below which gravity makes nothing
 NEAR_AXIS = 0.02  # components below which a direction is that of an axis
 
 
@@ -109,40 +104,15 @@ class _Sag:
     @classmethod
     def of(cls, found: Calibration) -> _Sag:
         """About the rigid arm where a calibration has placed it."""
-        problem = found.problem
-        model = found.model
-        for effect in model.effects:
-            if isinstance(effect, Elastic):
-                model = model.without(effect.id)
-        robot, white = model.robot, problem.of_channels.apply
-        size = float(np.linalg.norm(robot.gravity_in_base))
-        present = {effect.id for effect in model.effects}
-        beside, springs = (
-            [kind.at(robot, where, Options()) for kind in kinds for where in kind.places(robot)]
-            for kinds in ((JointFrame, TransmissionError), (JointSprings,))
-        )
-        wide = model
-        for effect in (*(each for each in beside if each.id not in present), *springs):
-            wide = wide + effect
-        own = np.array([isinstance(p.effect, JointSprings) for p in wide.parameters])
+        size = float(np.linalg.norm(found.model.robot.gravity_in_base))
 
-        def columns(model: Model) -> tuple[Array, Array]:
-            gap, slope = replace(problem, model=model).channel_gap(model.values, derivative=True)
-            return np.asarray(white(gap)), np.asarray(white(slope))
+        def under(way: Array) -> Callable[[PoseProblem], PoseProblem]:
+            return lambda problem: replace(problem, model=problem.model.under(size * way))
 
-        gap, slope = columns(wide)
-        Q = orthonormal(slope[:, ~own], ROUNDING)
-        ways = [size * axis for axis in (*np.eye(3), np.zeros(3))]
-        parts = [columns(wide.under(way))[1][:, own] for way in ways]
-        whole = np.column_stack([*parts, gap])
-        for _ in range(2):
-            whole = whole - Q @ (Q.T @ whole)
-        R = np.asarray(np.linalg.qr(whole)[1])
-        n = int(own.sum())
-        along = np.array([R[:, k * n : (k + 1) * n] for k in range(4)])
-        by_axis = along[:3] - along[3]
-        by_axis[np.abs(by_axis) < ROUNDING * np.abs(along).max()] = 0.0
-        return cls(by_axis, along[3], R[:, -1], len(gap) - Q.shape[1] - n)
+        sag = beside_frames(found, [under(way) for way in (*np.eye(3), np.zeros(3))])
+        by_axis = sag.along[:3] - sag.along[3]
+        by_axis[np.abs(by_axis) < ROUNDING * np.abs(sag.along).max()] = 0.0
+        return cls(by_axis, sag.along[3], sag.gap, sag.freedom)
 
     def best(self) -> Array:
         """(3,) unit vector along which gravity explains most."""

@@ -1,0 +1,91 @@
+"""What springs make of positions beside the errors of all joint frames, to first order.
+
+For slips of a whole file, which move every reading: gravity that points elsewhere, forces with the
+other sign or in other axes. Springs are fitted as each of them would have it; frames, and waves
+over all joints' angles, take what they can in any case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import nnls
+
+from sk120stiff.arrays import Array
+from sk120stiff.effects import Elastic
+from sk120stiff.effects.joint_frame import JointFrame
+from sk120stiff.effects.joint_springs import JointSprings
+from sk120stiff.effects.options import Options
+from sk120stiff.effects.transmission_error import TransmissionError
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.model import Model
+
+ROUNDING = 1e-9  # of the largest number, below which springs make nothing
+
+
+@dataclass(frozen=True, eq=False)
+class BesideFrames:
+    """Readings without what frames can take, as few numbers.
+
+    Attributes:
+        along: (k, r, n) readings per compliance of every drive, under each of k stated loads.
+        gap: (r,) what is to be explained.
+        freedom: Numbers beyond those of frames and springs.
+    """
+
+    along: Array
+    gap: Array
+    freedom: int
+
+    def square(self, along: Array) -> float:
+        """What springs leave of the gap's square with columns (r, n); none of them pushes."""
+        return float(nnls(along, self.gap)[1] ** 2)
+
+
+def without_springs(model: Model) -> Model:
+    """The model of an arm in which nothing yields."""
+    for effect in model.effects:
+        if isinstance(effect, Elastic):
+            model = model.without(effect.id)
+    return model
+
+
+def beside_frames(
+    found: Calibration, loads: Sequence[Callable[[PoseProblem], PoseProblem]]
+) -> BesideFrames:
+    """Springs about the rigid arm where a calibration has placed it.
+
+    Args:
+        found: The calibration.
+        loads: What is to be stated otherwise, each as a change of the problem.
+    """
+    model = without_springs(found.model)
+    robot, white = model.robot, found.problem.of_channels.apply
+    present = {effect.id for effect in model.effects}
+    beside, springs = (
+        [kind.at(robot, where, Options()) for kind in kinds for where in kind.places(robot)]
+        for kinds in ((JointFrame, TransmissionError), (JointSprings,))
+    )
+    for effect in (*(each for each in beside if each.id not in present), *springs):
+        model = model + effect
+    own = np.array([isinstance(p.effect, JointSprings) for p in model.parameters])
+    problem = replace(found.problem, model=model)
+
+    def columns(problem: PoseProblem) -> tuple[Array, Array]:
+        gap, slope = problem.channel_gap(problem.model.values, derivative=True)
+        return np.asarray(white(gap)), np.asarray(white(slope))
+
+    gap, slope = columns(problem)
+    Q = orthonormal(slope[:, ~own], ROUNDING)
+    parts = [columns(otherwise(problem))[1][:, own] for otherwise in loads]
+    whole = np.column_stack([*parts, gap])
+    for _ in range(2):
+        whole = whole - Q @ (Q.T @ whole)
+    R = np.asarray(np.linalg.qr(whole)[1])
+    n = int(own.sum())
+    along = np.array([R[:, k * n : (k + 1) * n] for k in range(len(parts))])
+    return BesideFrames(along, R[:, -1], len(gap) - Q.shape[1] - n)
