@@ -31,7 +31,7 @@ NEEDED = {
         ("loaded x", "loaded y", "loaded z"),
     ),
     "joints": (("joint 1",), ("joint 0",)),
-    "loads": (("fx", "fy", "fz"), ("payload",), ("load",)),
+    "loads": (("fx",), ("fy",), ("fz",), ("payload",), ("load",)),
 }
 SEARCHED = 80  # rows that may stand above the headers
 LISTED = 12  # comments and lines above the table that are shown one by one
@@ -188,11 +188,13 @@ def shaped(source: Source) -> tuple[int, bool, int]:
 def of_other_columns(source: Source) -> bool:
     """Does a row of headers stand above the numbers that `layout_of` did not understand?
 
-    How many numbers stand in a row then tells nothing: they have names, and others.
+    How many numbers stand in a row then tells nothing: they have names, and others. Three numbers
+    are positions whatever is written above them; of joints or loads they may be anything.
     """
     count, named, first = shaped(source)
     above = _cut(source.grid.rows[first - 1]) if first else ()
-    if len(above) != count + named or count <= len(POSITION):
+    few = source.role == "points" and count <= len(POSITION)
+    if len(above) != count + named or few:
         return False
     return not any(map(is_number, above)) and source.columns is None
 

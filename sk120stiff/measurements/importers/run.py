@@ -318,10 +318,11 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
     taken = {c.meaning for c in points.columns} | {"name"}
     more = [replace(c, file=other.path) for c in other.columns if c.meaning not in taken]
     twice = [c for c in other.columns if c.meaning in taken - {"name"}]
+    spare = tuple(replace(c, file=other.path) for c in other.spare)
     return replace(
         points,
         columns=(*_cut(points.columns, rows), *_cut(tuple(more), others)),
-        spare=(*_cut(points.spare, rows), *_cut(other.spare, others)),
+        spare=(*_cut(points.spare, rows), *_cut(spare, others)),
         lines=tuple(points.lines[k] for k in rows),
         rank=tuple(points.rank[k] for k in rows),
         skipped=tuple(lost),
