@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from sk120stiff import units
+from sk120stiff.measurements.importers.gauge_units import counted_unit
 from sk120stiff.measurements.importers.masses import MASSES
 
 TS = ("tx", "ty", "tz")
@@ -72,7 +73,9 @@ JOINT = re.compile(
     r"(?:q|j|jnt|joint|axis|achse|a|th|theta|θ)[ _]?(\d+)(?: (?:angle|pos(?:ition)?|value))?"
 )
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*(.*)")
-_TAIL = re.compile(r"(.+?)(?:[ /]\s*(mm|um|µm|m|inch|in|deg|rad|°|N|kN|kg|s)|_(mm|um|deg|rad|kg))")
+_TAIL = re.compile(
+    r"(.+?)(?:[ /]\s*(mm|um|µm|m|inch|in|deg|rad|°|N|kN|daN|kgf|kp|kg|s)|_(mm|um|deg|rad|kg))"
+)
 _DEGREES = {"°C", "degC", "C", "ºC"}
 _COVERAGE = re.compile(r"k ?= ?([123](?:\.\d+)?)")
 _FILE_UNITS = {
@@ -83,11 +86,22 @@ _FILE_UNITS = {
               "radian": "rad"},
 }  # fmt: skip
 
-_IN_WORDS = {
+UNITS_IN_WORDS = {  # words of units, as headers and rows of units have them
     word: unit
     for known in (
         *_FILE_UNITS.values(),
-        {"seconds": "s", "second": "s", "sec": "s", "newtons": "N", "newton": "N"},
+        {
+            "seconds": "s",
+            "second": "s",
+            "sec": "s",
+            "newtons": "N",
+            "newton": "N",
+            "grad": "deg",
+            "mikrometer": "um",
+            "micrometers": "um",
+            "micrometres": "um",
+            "microns": "um",
+        },
     )
     for word, unit in known.items()
     if len(word) > 2
@@ -98,7 +112,7 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
     """Name and unit of a header as people write it: ``X (mm)``, ``X [Meters]``, ``x_mm``."""
     match = _BRACKETS.fullmatch(header.strip())
     if match:
-        unit = _IN_WORDS.get(match[2].strip().lower(), match[2].strip())
+        unit = UNITS_IN_WORDS.get(match[2].strip().lower(), match[2].strip())
         if is_unit(unit):
             return f"{match[1]} {match[3]}".strip(), unit
     tail = _TAIL.fullmatch(header.strip())
@@ -108,8 +122,9 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
 
 
 def is_unit(text: str) -> bool:
-    """Is this the name of a unit, that of a temperature or a mass among them?"""
-    return text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
+    """Is this the name of a unit, that of a temperature, a mass or a dial gauge among them?"""
+    known = text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
+    return known or counted_unit(text) is not None
 
 
 def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] | None:
