@@ -33,6 +33,7 @@ from sk120stiff.measurements.importers.orientation import (
 )
 from sk120stiff.measurements.importers.orientation_columns import named
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
+from sk120stiff.measurements.importers.rows_in_words import understood_words
 from sk120stiff.measurements.importers.several_files import joined
 from sk120stiff.measurements.importers.several_markers import (
     of_marker,
@@ -141,7 +142,7 @@ def import_readings(
                 Path(one), robot.actuated, "points", tuple(columns) if columns else None,
                 sheet, topic, marker,
             ),
-            formats, format_name, joints_file, loads_file,
+            formats, format_name, joints_file, loads_file, told,
         )
         for one in paths
     ]  # fmt: skip
@@ -217,6 +218,7 @@ def _sheet(
     name: str | None,
     joints_file: Path | None,
     loads_file: Path | None,
+    told: Told,
 ) -> Sheet:
     whole = opened(source)
     importer, why = formats.chosen(whole, name)
@@ -232,7 +234,7 @@ def _sheet(
             continue
         more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return named(unfolded(of_marker(sheet, source.marker)))
+    return named(unfolded(understood_words(of_marker(sheet, source.marker), told)))
 
 
 def opened(source: Source) -> Source:

@@ -55,6 +55,13 @@ _NAMES = {
     "date and time|datetime|zeit|uhrzeit|zeitstempel|datum uhrzeit|datum/uhrzeit|datum zeit|"
     "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
     "date": "date|datum|fecha",
+    "pose": "pose|pose id|pose no|pose nr|pose number|pose name|posture|stellung|stellung nr|"
+    "roboterstellung|messstellung|haltung",
+    "branch": "branch|load branch|ast|lastast|belastungsast",
+    "repeat": "repeat|repetition|rep|wdh|wdh nr|wiederholung|wiederholung nr|run|run no|durchgang|"
+    "durchlauf|répétition|ripetizione|repetición",
+    "direction": "direction|dir|load direction|force direction|richtung|lastrichtung|kraftrichtung|"
+    "belastungsrichtung|sens|direzione|dirección",
     "marker": "marker|reflector|smr",
     "station": "station|station id|station no|station name|instrument station|tracker station|"
     "instrument id|instrument setup|tracker setup|tracker position|standpunkt|standort|stazione",
@@ -64,7 +71,7 @@ _NAMES = {
     "control": "control|dimension",
     "measured": "meas|measured|actual|ist",
 }
-_OWN = ("payload", "load", "pose", "use", "series", "branch", "repeat")  # mean themselves
+_OWN = ("payload", "load", "use", "series")  # mean themselves
 _WORDS = {word: meaning for meaning, words in _NAMES.items() for word in words.split("|")} | {
     word: word for word in _OWN
 }
@@ -132,8 +139,8 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
 
     ``x y z`` positions; ``measured x``, ``nominal x``, ``deviation x``; ``dx`` displacements;
     ``unloaded x``, ``loaded x`` both of a pose; ``sx`` standard uncertainties; ``fx mx payload
-    load`` loads; ``tcp x`` the marker in the tool frame; ``qw``, ``orientation ...``
-    axes, ``turn x`` how a load turned them; ``joint 3``; and labels.
+    load`` loads, ``direction`` of a force or branch; ``tcp x`` the marker in the tool frame;
+    ``qw``, ``orientation ...`` axes, ``turn x`` how a load turned them; ``joint 3``; and labels.
     """
     if name in actuated:
         return f"joint {actuated.index(name) + 1}", 1.0
