@@ -118,6 +118,7 @@ class Sheet:
         frame: The axes that the file says positions are in.
         notes: What was decided or taken for granted, in sentences.
         marker: The one of several markers that these are readings of, where one was chosen.
+        zero: Of positions with and without load: do rows of a pose share a zero reading?
     """
 
     path: Path
@@ -133,6 +134,7 @@ class Sheet:
     frame: str | None = None
     notes: tuple[str, ...] = ()
     marker: str | None = None
+    zero: Literal["shared", "separate"] = "shared"
 
     def get(self, meaning: str) -> Column | None:
         """The column of that meaning."""
