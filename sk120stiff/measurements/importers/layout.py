@@ -14,6 +14,7 @@ from sk120stiff.measurements.importers.gauge_units import counted_unit, multipli
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.masses import with_masses
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
+from sk120stiff.measurements.importers.vendor_joints import with_vendor_joints
 from sk120stiff.measurements.importers.words import (
     UNITS_IN_WORDS,
     file_units,
@@ -121,6 +122,7 @@ def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> boo
     named = [unit_of_header(cell) for cell in row if not is_number(cell)]
     known = [meaning(name, source.actuated) for name, _ in named]
     known, _ = with_masses([name for name, _ in named], known, [unit for _, unit in named])
+    known = with_vendor_joints([name for name, _ in named], known, source.actuated)
     found = {each[0] for each in with_torques(known, [unit for _, unit in named]) if each}
     return any(set(group) <= found for group in NEEDED[source.role])
 
@@ -154,6 +156,7 @@ def _laid_out(
     known = [meaning(name, source.actuated) if name else None for name, _ in named]
     known, units = with_masses([name for name, _ in named], known, units)
     known = with_torques(known, units)
+    known = with_vendor_joints([name for name, _ in named], known, source.actuated)
     meanings = _measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):

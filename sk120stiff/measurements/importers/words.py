@@ -77,7 +77,8 @@ _WORDS = {word: meaning for meaning, words in _NAMES.items() for word in words.s
 }
 _TEMPERATURE = re.compile(r"(?:\w+ )?(?:temp(?:erature|eratur)?)(?: \w+)?")
 JOINT = re.compile(
-    r"(?:q|j|jnt|joint|axis|achse|a|th|theta|θ)[ _]?(\d+)(?: (?:angle|pos(?:ition)?|value))?"
+    r"(?:q|j|jt|jnt|joint|gelenk|axis|achse|axe|asse|eje|ax|rax|a|th|theta|θ)[ _]?(\d+)"
+    r"(?: (?:angle|pos(?:ition)?|value))?"
 )
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*(.*)")
 _TAIL = re.compile(
