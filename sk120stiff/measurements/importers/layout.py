@@ -77,12 +77,14 @@ class Layout:
 def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
     """The table with headers of a grid, or None where no row is one of headers.
 
-    Headers are those that were told, else the first row that names what is needed, else a comment
-    above the numbers that does.
+    Headers are those that were told, with a row of units that stands above the numbers, else the
+    first row that names what is needed, else a comment above the numbers that does.
     """
     grid = source.grid
     if source.columns is not None:
         first = next((k for k, row in enumerate(grid.rows) if _numeric(row)), len(grid.rows))
+        if 0 < first < len(grid.rows) and _is_units(grid.rows[first - 1]):
+            first -= 1  # names were told, units stand in the file
         return _laid_out(source, tuple(source.columns), first, first, "as told", meaning)
     for k in range(min(SEARCHED, len(grid.rows))):
         row = _with_what_stands_above(grid.rows, k)

@@ -69,3 +69,12 @@ def test_a_row_of_words_is_no_row_of_units(row: str, tmp_path: Path) -> None:
 def test_what_is_no_unit_of_a_gauge(text: str) -> None:
     assert counted_unit(text) is None
     assert not is_unit("0 mm")
+
+
+def test_units_of_the_file_count_for_columns_that_were_named(tmp_path: Path) -> None:
+    names = ("pose", *(f"q{k}" for k in range(1, 7)), "fz", "-", "dx", "dy", "dz")
+    head = "Pose;A1;A2;A3;A4;A5;A6;Fz;Bemerkung;Messuhr X;Messuhr Y;Messuhr Z\n"
+    units = ";°;°;°;°;°;°;kgf;;1/100 mm;1/100 mm;1/100 mm\n"
+    found = draft_of(tmp_path, head + units + ROWS, known={"columns": names})
+    assert written(found)["dx[um]"] == ("-629", "-69")
+    assert found.loads.wrench[0, 2] == pytest.approx(98.0665)
