@@ -19,6 +19,7 @@ _IN_WORDS = [
     (power, re.compile(rf"(?:{word})(?: of)?(?: an?)?[ -]*(?P<unit>[^\W\d].*|)"))
     for word, power in _WORDS.items()
 ]
+LARGEST = 1e-3  # m or rad, of several units that a gauge counts at once: 10 µm
 _MICROMETRES = Decimal(1000)  # in a millimetre
 
 
@@ -40,8 +41,9 @@ def counted_unit(text: str) -> tuple[str, Decimal] | None:
     if found is None or size == 0:
         return None
     unit = found["unit"].strip() or "mm"  # hundredths without a word more are those of a dial gauge
-    if not units.is_kind(unit, "length") and not units.is_kind(unit, "angle"):
-        return None
+    kind = next((k for k in ("length", "angle") if units.is_kind(unit, k)), None)
+    if kind is None or (size > 1 and units.to_si(float(size), unit, kind) > LARGEST):
+        return None  # (100 mm) behind a header is a place
     size = size.normalize()
     return ("um", (size * _MICROMETRES).normalize()) if unit == "mm" else (unit, size)
 

@@ -42,8 +42,9 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
     A component of forces that has no column is zero, which is said; of moments in the same way.
 
     Raises:
-        InputError: Two of the three, moments without forces, a component that may stand in a
-            column of another name, a unit that nobody said, or a wrench for nothing.
+        InputError: Two of the three, a force without its axis beside displacements, moments without
+            forces, a component that may stand in a column of another name, a unit that nobody said,
+            or a wrench for nothing.
     """
     where = str(sheet.path)
     there = [
@@ -85,7 +86,26 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
         return Loads(W, None, (counted,), said=said)
     if hung is not None:
         return _hung(sheet, hung, told, W)
+    if not there:
+        _refuse_a_force_along_nothing(sheet)
     return _forces(sheet, told, W) if there else Loads(W)
+
+
+def _refuse_a_force_along_nothing(sheet: Sheet) -> None:
+    """Displacements come of a load: a column in a unit of force is one, along an axis unknown.
+
+    Raises:
+        InputError: Such a column stands beside displacements.
+    """
+    for column in sheet.spare if sheet.has("dx", "dy", "dz") else ():
+        if column.unit and units.is_kind(column.unit, "force"):
+            raise InputError(
+                f"nothing says along which axis {column.header!r} acts",
+                where=sheet.place(column),
+                remedy=f"Call it fx, fy or fz[{column.unit}] (axes of the base; a weight is a "
+                "negative fz), or add a column direction: -Z, +X and so on; if it is no load, take "
+                "it out.",
+            )
 
 
 def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:

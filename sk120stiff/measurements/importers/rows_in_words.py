@@ -41,7 +41,7 @@ def understood_words(sheet: Sheet, told: Told) -> Sheet:
     """
     sheet = _with_branches(sheet)
     sheet = _with_repeats(sheet)
-    direction = sheet.get("direction")
+    direction = sheet.get("force direction") or sheet.get("direction")
     if direction is None:
         return sheet
     if all(_along(cell) or _empty(cell) for cell in direction.cells):

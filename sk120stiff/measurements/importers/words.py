@@ -56,12 +56,13 @@ _NAMES = {
     "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
     "date": "date|datum|fecha",
     "pose": "pose|pose id|pose no|pose nr|pose number|pose name|posture|stellung|stellung nr|"
-    "roboterstellung|messstellung|haltung",
+    "roboterstellung|messstellung",
     "branch": "branch|load branch|ast|lastast|belastungsast",
     "repeat": "repeat|repetition|rep|wdh|wdh nr|wiederholung|wiederholung nr|run|run no|durchgang|"
     "durchlauf|répétition|ripetizione|repetición",
-    "direction": "direction|dir|load direction|force direction|richtung|lastrichtung|kraftrichtung|"
-    "belastungsrichtung|sens|direzione|dirección",
+    "direction": "direction|dir|load direction|richtung|lastrichtung|belastungsrichtung|sens|"
+    "direzione|dirección",
+    "force direction": "force direction|direction of force|kraftrichtung",
     "marker": "marker|reflector|smr",
     "station": "station|station id|station no|station name|instrument station|tracker station|"
     "instrument id|instrument setup|tracker setup|tracker position|standpunkt|standort|stazione",

@@ -65,7 +65,9 @@ def test_a_row_of_words_is_no_row_of_units(row: str, tmp_path: Path) -> None:
     assert all(c.unit is None for c in sheet.columns)
 
 
-@pytest.mark.parametrize("text", ["1/100", "0 mm", "1/30 mm", "0.01 kg", "x mm", "mm/100", "", "1"])
+@pytest.mark.parametrize(
+    "text", ["1/100", "0 mm", "1/30 mm", "0.01 kg", "x mm", "mm/100", "", "1", "100 mm"]
+)
 def test_what_is_no_unit_of_a_gauge(text: str) -> None:
     assert counted_unit(text) is None
     assert not is_unit("0 mm")

@@ -71,3 +71,11 @@ def test_numbers_under_another_header_are_no_payload(header: str, tmp_path: Path
     with pytest.raises(InputError, match="no format that is known fits this file") as caught:
         wrench(tmp_path, f"Name;{header}\nA;196.13\nB;5\n")
     assert "fx[N], fy[N], fz[N]" in caught.value.remedy and "--columns" not in caught.value.remedy
+
+
+def test_a_force_without_an_axis_is_asked_for_beside_displacements(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="along which axis 'Kraft \\[N\\]' acts") as caught:
+        draft_of(tmp_path, MOVED.format("Kraft [N]", "1", "2"), length="mm", angle="deg")
+    assert "direction" in caught.value.remedy
+    free = draft_of(tmp_path, MOVED.format("Strom [A]", "1", "2"), length="mm", angle="deg")
+    assert not free.loads.wrench.any()

@@ -119,7 +119,15 @@ def test_a_direction_beside_components_is_a_note(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("header", "meaning"),
     [("Wiederholung", "repeat"), ("Rep.", "repeat"), ("run", "repeat"), ("Stellung", "pose"),
-     ("Pose", "pose"), ("Punkt", "name"), ("Kraftrichtung", "direction"), ("branch", "branch")],
+     ("Pose", "pose"), ("Punkt", "name"), ("Kraftrichtung", "force direction"),
+     ("branch", "branch")],
 )  # fmt: skip
 def test_headers_of_rows(header: str, meaning: str) -> None:
     assert meaning_of(header) == (meaning, 1.0)
+
+
+def test_a_branch_and_a_direction_of_the_force_stand_side_by_side(tmp_path: Path) -> None:
+    found = read(tmp_path, "Kraft [N];Kraftrichtung;Richtung", ["10;-Z;auf", "10;-Z;ab"])
+    assert written(found)["branch"] == ("load", "unload")
+    np.testing.assert_allclose(found.loads.wrench[:, 2], -10.0)
+    assert not found.unused
