@@ -35,7 +35,9 @@ NEEDED = {
         ("loaded x", "loaded y", "loaded z"),
     ),
     "joints": (("joint 1",), ("joint 0",)),
-    "loads": (("fx",), ("fy",), ("fz",), ("payload",), ("load",)),
+    "loads": tuple(
+        (word,) for word in ("fx", "fy", "fz", "payload", "load", "direction", "force direction")
+    ),
 }
 SEARCHED = 80  # rows that may stand above the headers
 LISTED = 12  # comments and lines above the table that are shown one by one

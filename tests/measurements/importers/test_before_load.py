@@ -149,3 +149,13 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="2 files of positions") as caught:
         import_readings(paths, robot, joints_file=given["joints_file"])
     assert "--before" in caught.value.remedy
+
+
+def test_loads_by_size_and_direction_in_their_own_file(tmp_path: Path) -> None:
+    given = files(tmp_path)
+    rows = [[name, 20, "+X" if k % 2 else "-Z"] for k, name in enumerate(SEEN.names)]
+    table(given["loads_file"], ["Name", "Kraft [daN]", "Richtung"], rows)
+    found = brought(given)
+    odd = np.array([SEEN.names.index(p) % 2 for p in found.readings.pose], dtype=bool)
+    np.testing.assert_allclose(found.readings.wrench[odd, 0], 200.0)
+    np.testing.assert_allclose(found.readings.wrench[~odd, 2], -200.0)
