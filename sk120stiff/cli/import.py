@@ -64,6 +64,7 @@ def command(
     preview: Annotated[bool, typer.Option("--preview", "--dry-run")] = False,
     joints_file: Path | None = None,
     loads_file: Path | None = None,
+    before: Path | None = None,
     length: Length | None = None,
     angle: Angle | None = None,
     load: Load | None = None,
@@ -102,6 +103,8 @@ def command(
         joints_file (FILE): Joint values, where they stand in a file of their own; matched by name,
             else by order.
         loads_file (FILE): Forces or payloads, in the same way.
+        before (FILE): Positions of the same poses without load, in the same way; those of FILE are
+            then under the load.
         length: Unit of positions, where the file does not say it.
         angle: Unit of joint angles, where the file does not say it.
         load: Unit of fx,fy,fz or payload (kg: payload alone).
@@ -153,6 +156,7 @@ def command(
         ),
         joints_file=joints_file,
         loads_file=loads_file,
+        before=before,
         format_name=format_name,
         columns=_names(columns),
         sheet=sheet,

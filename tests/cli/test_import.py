@@ -228,3 +228,22 @@ def test_two_files_are_one_campaign(run, tmp_path: Path) -> None:
     assert outcome.document["rows"] == 3 and outcome.document["registration"]["stations"] == []
     assert any("2 files are one campaign" in said for said in outcome.document["assumed"])
     assert read_measurements(out).n_readings == 3
+
+
+def test_positions_before_and_under_the_load_in_two_files(run, tmp_path: Path) -> None:
+    """Springs come out of two files as out of one, with the load told once for all rows."""
+    rows = Path(marks(tmp_path)).read_text().splitlines()
+    names = ("before", "after")
+    for name, own in zip(names, (rows[1::2], rows[2::2]), strict=True):
+        text = [rows[0].replace(",load", ""), *(row.rpartition(",")[0] for row in own)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(text) + "\n")
+    before, after = (str(tmp_path / f"{name}.csv") for name in names)
+    out, load = str(tmp_path / "own.csv"), ("--wrench", "0,300,-490 N")
+    outcome = run("import", after, "--before", before, *TOLD, *load, "--out", out)
+    assert outcome.code == 0, outcome.stderr
+    said = " ".join(outcome.stderr.split())
+    assert "before.csv" in said and "(displacement: {zero: separate})" in said
+    values = [p["value"] for p in run("identify", out, "--json").document["parameters"]]
+    assert values == pytest.approx([1.4098e6, 4.0076e5, 9.3528e5], rel=2e-3)
+    again = run("import", after, before, *TOLD, "--before", before, "--preview")
+    assert again.code == 2 and "and one of positions without load" in again.stderr

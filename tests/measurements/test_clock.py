@@ -1,8 +1,11 @@
 """Clocks as labs write them, in one column or two."""
 
+from pathlib import Path
+
 import pytest
 
-from sk120stiff.measurements.importers.clock import since_first
+from sk120stiff.measurements.importers.clock import since_1970, since_first
+from tests.measurements.importers.reading import draft_of, written
 
 
 @pytest.mark.parametrize(
@@ -71,3 +74,43 @@ def test_the_order_of_the_readings_tells_day_from_month() -> None:
 
 def test_what_is_no_clock_is_told() -> None:
     assert "2026-11-22" in since_first(["early", "late"])
+
+
+@pytest.mark.parametrize(
+    ("unit", "cells"),
+    [
+        ("seconds", ["1732700000.020", "1732700000.145", "1732700060"]),
+        ("milliseconds", ["1732700000020", "1732700000145", "1732700060000"]),
+        ("microseconds", ["1732700000020000", "1732700000145000", "1732700060000000"]),
+        ("nanoseconds", ["1732700000020000000", "1732700000145000000", "1732700060000000000"]),
+    ],
+)
+def test_what_computers_count_since_1970(unit: str, cells: list[str]) -> None:
+    found = since_1970(cells)
+    assert found is not None and found[0] == unit
+    assert [float(second) for second in found[1]] == [0.0, 0.125, 59.98]
+    assert since_first(cells) == found[1]
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["0.0", "0.5"], ["1732700000", "12"], ["1732700000", "1732700000000"], ["1732700000", ""],
+        ["20261122101500", "20261122101501"], ["nan", "1732700000"],
+    ],
+)  # fmt: skip
+def test_other_numbers_are_no_time(cells: list[str]) -> None:
+    assert since_1970(cells) is None
+    assert "no time in seconds" in since_first(cells)
+
+
+def test_a_column_of_such_counts_is_the_time_and_that_is_said(tmp_path: Path) -> None:
+    rows = [f"{k},2,3,1,2,3,4,5,6,{1732700000 + 10 * k}.25" for k in range(3)]
+    text = "\n".join(["x,y,z,q1,q2,q3,q4,q5,q6,timestamp", *rows]) + "\n"
+    found = draft_of(tmp_path, text, length="mm", angle="deg")
+    assert written(found)["time[s]"] == ("0.00", "10.00", "20.00")
+    assert "timestamp counts seconds since 1970." in found.said
+    iso = text.replace("17327000", "2026-11-22T10:15:")  # 2026-11-22T10:15:00.25 and so on
+    assert written(draft_of(tmp_path, iso, length="mm", angle="deg"))["time[s]"][1:] == (
+        "10.0", "20.0",
+    )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import re
 from collections.abc import Iterator, Sequence
+from decimal import Decimal, InvalidOperation
 from itertools import pairwise, product
 from typing import Literal
 
@@ -19,6 +20,8 @@ TIMES = (
 )  # fmt: skip
 DAY = dt.timedelta(days=1)
 
+_UNIX = (Decimal(10) ** 9, Decimal(42) * 10**8)  # seconds since 1970 in 2001 and in 2103
+_COUNTED = {0: "seconds", 3: "milliseconds", 6: "microseconds", 9: "nanoseconds"}  # 10^-k s
 EXAMPLES = "2026-11-22 10:15:00, 22.11.2026 10:15:00, 10:15:00"
 EITHER_WAY = "day and month can be read either way; write dates as 2026-11-22"
 _OTHER_ORDER = {"dmy": re.compile("%m[/-]%d"), "mdy": re.compile("%d[/-]%m")}
@@ -36,6 +39,9 @@ def since_first(*columns: Sequence[str], order: DateOrder | None = None) -> tupl
         order: Does the day come first in dates like 10/09/2026, or the month? None: what all cells
             together can be read as, and what rises, tells.
     """
+    counted = since_1970(columns[0]) if len(columns) == 1 else None
+    if counted is not None:
+        return counted[1]
     columns = tuple([_plain(cell) for cell in cells] for cells in columns)
     ways: tuple[tuple[Sequence[str], ...], ...] = (columns,)
     if len(columns) > 1:
@@ -54,6 +60,22 @@ def since_first(*columns: Sequence[str], order: DateOrder | None = None) -> tupl
     if len(rising) == 1 or len(found) == 1:
         return tuple(map(repr, (rising or found)[0]))
     return EITHER_WAY if found else f"no time in seconds, and none like {EXAMPLES}"
+
+
+def since_1970(cells: Sequence[str]) -> tuple[str, tuple[str, ...]] | None:
+    """Clocks of computers: what they count since 1970, and seconds since the first reading.
+
+    None where the numbers are no such count of this century.
+    """
+    try:
+        counts = [Decimal(cell) for cell in cells]
+    except InvalidOperation:
+        return None
+    for power, unit in _COUNTED.items():
+        times = [count.scaleb(-power) for count in counts]
+        if all(time.is_finite() and _UNIX[0] <= time <= _UNIX[1] for time in times):
+            return unit, tuple(f"{time - times[0]:f}" for time in times)
+    return None
 
 
 def _plain(cell: str) -> str:

@@ -15,6 +15,14 @@ from sk120stiff.measurements.importers.grid import Grid, text_grid
 Role = Literal["points", "joints", "loads"]
 FILE = "(file)"  # header of a column that holds the names of files
 CLOSE = 0.1  # confidences that differ by less do not decide
+_NEEDED: dict[Role, str] = {  # what to do where nothing of a file is understood
+    "points": "Name its columns, e.g. --columns 'name,x,y,z,q1,q2,q3,q4,q5,q6' (a dash for one "
+    "that is not needed; of several markers x1,y1,z1,x2,y2,z2). ",
+    "joints": "Give its columns headers: a name, and the robot's joints or q1[deg], q2[deg], and "
+    "so on. ",
+    "loads": "Give its columns headers: a name, and one or more of fx[N], fy[N], fz[N] (axes of "
+    "the base), or payload[kg], which hangs down, or load, which counts --wrench. ",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +118,7 @@ class Sheet:
         frame: The axes that the file says positions are in.
         notes: What was decided or taken for granted, in sentences.
         marker: The one of several markers that these are readings of, where one was chosen.
+        zero: Of positions with and without load: do rows of a pose share a zero reading?
     """
 
     path: Path
@@ -125,6 +134,7 @@ class Sheet:
     frame: str | None = None
     notes: tuple[str, ...] = ()
     marker: str | None = None
+    zero: Literal["shared", "separate"] = "shared"
 
     def get(self, meaning: str) -> Column | None:
         """The column of that meaning."""
@@ -196,9 +206,7 @@ class Formats:
             raise InputError(
                 "no format that is known fits this file",
                 where=str(source.path),
-                remedy="Name its columns, e.g. --columns 'name,x,y,z,q1,q2,q3,q4,q5,q6' (a dash "
-                "for one that is not needed; of several markers x1,y1,z1,x2,y2,z2). "
-                f"Formats are {names}.",
+                remedy=_NEEDED[source.role] + f"Formats are {names}.",
             )
         guesses.sort(key=lambda pair: -pair[0].confidence)
         best = guesses[0]

@@ -12,7 +12,7 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE
 from sk120stiff.measurements.columns import QUATERNION
-from sk120stiff.measurements.importers.clock import EITHER_WAY, since_first
+from sk120stiff.measurements.importers.clock import EITHER_WAY, since_1970, since_first
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
 from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
@@ -113,7 +113,7 @@ def drafted(
     for group, notes in (
         _sigmas(sheet, told, unit, reasons),
         _turns(sheet, told, displaced=readings[0][0].startswith("d")),
-        _conditions(sheet, told, reasons),
+        _conditions(sheet, told, loads.wrench, reasons),
     ):
         for column, header, cells in group:
             if header:
@@ -265,8 +265,9 @@ def _turns(sheet: Sheet, told: Told, *, displaced: bool) -> _Group:
     return found, []
 
 
-def _conditions(sheet: Sheet, told: Told, reasons: dict[int, str]) -> _Group:
-    """Temperature, time, order and labels."""
+def _conditions(sheet: Sheet, told: Told, W: Array, reasons: dict[int, str]) -> _Group:
+    """Temperature, time, order and labels; rows without load need no branch."""
+    loaded = [bool(row.any()) for row in W]
     found: list[tuple[Column, str, tuple[str, ...]]] = []
     for column in sheet.columns:
         word, unit = column.meaning, column.unit
@@ -279,11 +280,19 @@ def _conditions(sheet: Sheet, told: Told, reasons: dict[int, str]) -> _Group:
                 numbers(sheet, column)
                 header = f"temperature[{'K' if unit == 'K' else 'degC'}]"
                 found.append((column, header, texts(column)))
-        elif word in LABELS and all(column.cells):
+        elif word in LABELS and not all(
+            cell or (word == "branch" and not under)
+            for cell, under in zip(column.cells, loaded, strict=True)
+        ):
+            reasons[id(column)] = ": some cells are empty"
+        elif word in LABELS:
             if word == "order":
                 numbers(sheet, column)
             found.append((column, word, column.cells))
-    return found + _clock(sheet, told, reasons), []
+    clock = sheet.get("time")
+    counted = since_1970(clock.cells) if clock is not None and clock.unit is None else None
+    notes = [f"{clock.header} counts {counted[0]} since 1970."] if clock and counted else []
+    return found + _clock(sheet, told, reasons), notes
 
 
 def _clock(

@@ -7,12 +7,16 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+from sk120stiff import units
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
+from sk120stiff.measurements.importers.gauge_units import counted_unit, multiplied
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.masses import with_masses
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
+from sk120stiff.measurements.importers.vendor_joints import with_vendor_joints
 from sk120stiff.measurements.importers.words import (
+    UNITS_IN_WORDS,
     file_units,
     is_unit,
     kind_of,
@@ -31,11 +35,14 @@ NEEDED = {
         ("loaded x", "loaded y", "loaded z"),
     ),
     "joints": (("joint 1",), ("joint 0",)),
-    "loads": (("fx", "fy", "fz"), ("payload",), ("load",)),
+    "loads": tuple(
+        (word,) for word in ("fx", "fy", "fz", "payload", "load", "direction", "force direction")
+    ),
 }
 SEARCHED = 80  # rows that may stand above the headers
 LISTED = 12  # comments and lines above the table that are shown one by one
 BLANK = {"", "nan", "n/a", "na", "-", "--", "---", "none", "null", "#n/a"}
+_UNIT_WORDS = ("unit", "units", "einheit", "einheiten", "unité", "unités", "unidad", "unità")
 ABOVE = "the lines above the table"
 _FRAME = re.compile(r"(?:working )?frame\W+(?!rate)(.+)", re.IGNORECASE)
 
@@ -49,9 +56,11 @@ class Layout:
     Args:
         headers: Name of each column as written.
         meanings: What each means and its factor, or None.
-        units: Unit of each as stated, or None, and `stated` in which place.
+        units: Unit of each as stated, or None, and `stated` in which place; without a unit, what
+            stands in that place instead.
         first: Index of the first row below the headers.
         above: Lines above the table, as text with their numbers.
+        notes: What is to be said of the units, in sentences.
     """
 
     headers: tuple[str, ...]
@@ -60,6 +69,7 @@ class Layout:
     stated: tuple[str, ...]
     first: int
     above: tuple[tuple[int, str], ...]
+    notes: tuple[str, ...] = ()
 
     def has(self, *meanings: str) -> bool:
         """Are all of these among the columns?"""
@@ -69,12 +79,14 @@ class Layout:
 def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
     """The table with headers of a grid, or None where no row is one of headers.
 
-    Headers are those that were told, else the first row that names what is needed, else a comment
-    above the numbers that does.
+    Headers are those that were told, with a row of units that stands above the numbers, else the
+    first row that names what is needed, else a comment above the numbers that does.
     """
     grid = source.grid
     if source.columns is not None:
         first = next((k for k, row in enumerate(grid.rows) if _numeric(row)), len(grid.rows))
+        if 0 < first < len(grid.rows) and _is_units(grid.rows[first - 1]):
+            first -= 1  # names were told, units stand in the file
         return _laid_out(source, tuple(source.columns), first, first, "as told", meaning)
     for k in range(min(SEARCHED, len(grid.rows))):
         row = _with_what_stands_above(grid.rows, k)
@@ -114,6 +126,7 @@ def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> boo
     named = [unit_of_header(cell) for cell in row if not is_number(cell)]
     known = [meaning(name, source.actuated) for name, _ in named]
     known, _ = with_masses([name for name, _ in named], known, [unit for _, unit in named])
+    known = with_vendor_joints([name for name, _ in named], known, source.actuated)
     found = {each[0] for each in with_torques(known, [unit for _, unit in named]) if each}
     return any(set(group) <= found for group in NEEDED[source.role])
 
@@ -126,25 +139,37 @@ def _laid_out(
     named = [unit_of_header(h) if h else ("", None) for h in headers]
     units = [unit for _, unit in named]
     places = [f"the header, {stated}" if unit else "" for unit in units]
+    strange: list[str] = []
     if first < len(grid.rows) and _is_units(grid.rows[first]):
+        line = f"line {grid.lines[first]}"
         for k, cell in enumerate(grid.rows[first][: len(units)]):
-            text = cell.strip("[]()")
-            if text.lower() not in BLANK and units[k] is None:
-                units[k], places[k] = text, f"line {grid.lines[first]}"
+            text = _unit_in(cell)
+            if text.lower() in (*BLANK, *_UNIT_WORDS) or units[k] is not None:
+                continue
+            if is_unit(text):
+                units[k], places[k] = text, line
+            else:
+                places[k] = f"{line}: {text!r}"
+                strange.append(f"{text!r} ({headers[k]})")
         first += 1
+        if strange:
+            strange = [f"In the units of {line} these are not known: {', '.join(strange)}."]
     above = [
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
     known = [meaning(name, source.actuated) if name else None for name, _ in named]
     known, units = with_masses([name for name, _ in named], known, units)
     known = with_torques(known, units)
+    known = with_vendor_joints([name for name, _ in named], known, source.actuated)
     meanings = _measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):
         kind = kind_of(each[0]) if each else None
         if kind in said and units[k] is None:
             units[k], places[k] = said[kind], ABOVE
-    return Layout(headers, meanings, tuple(units), tuple(places), first, tuple(above))
+    return Layout(
+        headers, meanings, tuple(units), tuple(places), first, tuple(above), tuple(strange)
+    )
 
 
 def _measured(
@@ -159,9 +184,16 @@ def _measured(
     return tuple(meanings)
 
 
+def _unit_in(cell: str) -> str:
+    """The text of a cell in a row of units, without brackets and in the words of units."""
+    return UNITS_IN_WORDS.get(cell.strip("[]() ").lower(), cell.strip("[]() "))
+
+
 def _is_units(row: tuple[str, ...]) -> bool:
-    cells = [c for cell in row if (c := cell.strip("[]()")).lower() not in BLANK]
-    return bool(cells) and not any(map(is_number, cells)) and all(map(is_unit, cells))
+    """Is this a row of units: no number, and as many cells that are units as others?"""
+    cells = [c for cell in row if (c := _unit_in(cell)).lower() not in (*BLANK, *_UNIT_WORDS)]
+    known = sum(map(is_unit, cells))
+    return known > 0 and not any(map(is_number, cells)) and 2 * known >= len(cells)
 
 
 def shaped(source: Source) -> tuple[int, bool, int]:
@@ -188,11 +220,13 @@ def shaped(source: Source) -> tuple[int, bool, int]:
 def of_other_columns(source: Source) -> bool:
     """Does a row of headers stand above the numbers that `layout_of` did not understand?
 
-    How many numbers stand in a row then tells nothing: they have names, and others.
+    How many numbers stand in a row then tells nothing: they have names, and others. Three numbers
+    are positions whatever is written above them; of joints or loads they may be anything.
     """
     count, named, first = shaped(source)
     above = _cut(source.grid.rows[first - 1]) if first else ()
-    if len(above) != count + named or count <= len(POSITION):
+    few = source.role == "points" and count <= len(POSITION)
+    if len(above) != count + named or few:
         return False
     return not any(map(is_number, above)) and source.columns is None
 
@@ -284,7 +318,7 @@ def sheet_of(
         total=total,
         spare=tuple(spare),
         frame=frame,
-        notes=(f"Read as {grid.how}.", *notes) if grid.how else notes,
+        notes=(*((f"Read as {grid.how}.",) if grid.how else ()), *notes, *layout.notes),
     )
 
 
@@ -335,14 +369,26 @@ def _columns(
         if known is None:
             if any(cells[k]):
                 name = header.strip("-") or f"column {k + 1}"
-                spare.append(Column(name, "", layout.units[k], layout.stated[k], cells[k]))
+                spare.append(_in_one_unit(name, "", layout, k, cells[k]))
             continue
         meaning, factor = known
         if any(c.meaning == meaning for c in columns):
             twice.append(f"column {header}: a second {meaning}")
             continue
-        unit, stated = layout.units[k], layout.stated[k]
-        if unit is None and (kind := kind_of(meaning)) in assumed:
-            unit, stated = assumed[kind], "the format prescribes it"
-        columns.append(Column(header, meaning, unit, stated, cells[k], factor))
+        column = replace(_in_one_unit(header, meaning, layout, k, cells[k]), factor=factor)
+        if column.unit is None and (kind := kind_of(meaning)) in assumed:
+            column = replace(column, unit=assumed[kind], stated="the format prescribes it")
+        columns.append(column)
     return columns, spare, twice
+
+
+def _in_one_unit(
+    header: str, meaning: str, layout: Layout, k: int, cells: tuple[str, ...]
+) -> Column:
+    """A column; what counts parts of a unit, as 1/100 mm, becomes numbers in a unit."""
+    unit, stated = layout.units[k], layout.stated[k]
+    counted = counted_unit(unit) if unit and not units.is_unit(unit) else None
+    if counted is None:
+        return Column(header, meaning, unit, stated, cells)
+    cells = tuple(multiplied(cell, counted[1]) for cell in cells)
+    return Column(header, meaning, counted[0], f"{stated}: {unit}", cells)

@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 POSITIONS = ("x", "y", "z")
 WITHOUT, WITH = "unloaded", "loaded"
-_LOADS = ("fx", "fy", "fz", "mx", "my", "mz", "payload", "load")
+LOADS = ("fx", "fy", "fz", "mx", "my", "mz", "payload", "load")
 _OF_ONE = ("order", "time")  # of two readings, which one it was is not said
 
 
@@ -36,17 +36,18 @@ def unfolded(sheet: Sheet) -> Sheet:
             remedy="Name the columns with --columns: 'x_unloaded,y_unloaded,z_unloaded,x_loaded,"
             "y_loaded,z_loaded', or 'x,y,z' where one reading alone counts.",
         )
-    if not any(sheet.get(name) for name in _LOADS):
+    if not any(sheet.get(name) for name in LOADS):
         raise InputError(
             "positions stand there with and without load, and no column says the load",
             where=str(sheet.path),
-            remedy="Add the columns fx[N], fy[N], fz[N] or payload[kg], or give --loads-file.",
+            remedy="Add the columns fx[N], fy[N], fz[N] or payload[kg], or give --loads-file; with "
+            "--before one load in all rows is --wrench '0,0,-490 N'.",
         )
     columns: list[Column] = []
     for column in sheet.columns:
         if column.meaning in (*names, *_OF_ONE):
             continue
-        before = ("0",) * len(column.cells) if column.meaning in _LOADS else column.cells
+        before = ("0",) * len(column.cells) if column.meaning in LOADS else column.cells
         columns.append(replace(column, cells=_woven(before, column.cells)))
     for axis in POSITIONS:
         free, pushed = (sheet.get(f"{kind} {axis}") for kind in (WITHOUT, WITH))

@@ -7,9 +7,11 @@ from typing import Literal
 
 import numpy as np
 
+from sk120stiff import units
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
 from sk120stiff.measurements.poses import rows_by_label
 
@@ -37,9 +39,12 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
     """Forces ``fx fy fz`` (``mx my mz``), or ``payload`` that hangs down, or ``load`` that counts
     how many times `told.wrench` acts. Without any of them there is no load.
 
+    A component of forces that has no column is zero, which is said; of moments in the same way.
+
     Raises:
-        InputError: Two of the three, an incomplete one, a unit that nobody said, or a wrench for
-            nothing.
+        InputError: Two of the three, a force without its axis beside displacements, moments without
+            forces, a component that may stand in a column of another name, a unit that nobody said,
+            or a wrench for nothing.
     """
     where = str(sheet.path)
     there = [
@@ -81,7 +86,26 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
         return Loads(W, None, (counted,), said=said)
     if hung is not None:
         return _hung(sheet, hung, told, W)
+    if not there:
+        _refuse_a_force_along_nothing(sheet)
     return _forces(sheet, told, W) if there else Loads(W)
+
+
+def _refuse_a_force_along_nothing(sheet: Sheet) -> None:
+    """Displacements come of a load: a column in a unit of force is one, along an axis unknown.
+
+    Raises:
+        InputError: Such a column stands beside displacements.
+    """
+    for column in sheet.spare if sheet.has("dx", "dy", "dz") else ():
+        if column.unit and units.is_kind(column.unit, "force"):
+            raise InputError(
+                f"nothing says along which axis {column.header!r} acts",
+                where=sheet.place(column),
+                remedy=f"Call it fx, fy or fz[{column.unit}] (axes of the base; a weight is a "
+                "negative fz), or add a column direction: -Z, +X and so on; if it is no load, take "
+                "it out.",
+            )
 
 
 def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:
@@ -102,25 +126,53 @@ def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:
 
 
 def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
+    if not any(map(sheet.get, FORCES)):
+        raise InputError(
+            "there are moments, and no column fx, fy, fz holds a force",
+            where=str(sheet.path),
+            remedy="Add the forces: fx, fy, fz; with zeros where none acted.",
+        )
     groups = [FORCES, MOMENTS] if any(map(sheet.get, MOMENTS)) else [FORCES]
     missing = [name for group in groups for name in group if sheet.get(name) is None]
     if missing:
-        raise InputError(
-            f"the column {missing[0]!r} is missing",
-            where=str(sheet.path),
-            remedy=f"{', '.join(FORCES if missing[0] in FORCES else MOMENTS)} come together.",
-        )
-    taken = [c for group in groups for name in group if (c := sheet.get(name))]
-    for k, column in enumerate(taken):
-        kind = "force" if k < 3 else "moment"
-        W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
+        _refuse_a_force_by_another_name(sheet, missing)
+    taken = []
+    for k, name in enumerate((*FORCES, *MOMENTS)):
+        column, kind = sheet.get(name), "force" if k < len(FORCES) else "moment"
+        if column is not None:
+            W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
+            taken.append(column)
     said = {
         "base": "Forces are taken to act on the robot, in axes of the base frame; of those of a "
         "sensor on the tool say --forces tool.",
         "tool": "Forces are taken to act on the robot, in axes of the tool frame.",
     }
     frame = told.forces or "base"
-    return Loads(W, None, tuple(taken), frame, said[frame])
+    zero = f" Of {listed(missing)} there is no column: taken as zero." if missing else ""
+    return Loads(W, None, tuple(taken), frame, said[frame] + zero)
+
+
+def _refuse_a_force_by_another_name(sheet: Sheet, missing: list[str]) -> None:
+    """A column that is not understood may be the missing one: if it is in a unit of force or
+    moment; and, where one of three alone is missing, if it holds numbers without a unit.
+
+    Raises:
+        InputError: There is such a column.
+    """
+    one = any(len(set(missing) & set(group)) == 1 for group in (FORCES, MOMENTS))
+    known = [c for c in sheet.spare if c.unit]
+    may_be = [c for c in known if any(units.is_kind(str(c.unit), k) for k in ("force", "moment"))]
+    if one:
+        may_be += [c for c in sheet.spare if not c.unit and all(map(is_number, c.cells))]
+    if may_be:
+        raise InputError(
+            f"of the load {listed(missing)} {'has' if len(missing) == 1 else 'have'} no column, "
+            f"and what {listed([repr(c.header) for c in may_be])} "
+            f"{'is' if len(may_be) == 1 else 'are'} is not known",
+            where=str(may_be[0].file or sheet.path),
+            remedy=f"Call the column {missing[0]}[{may_be[0].unit or 'N'}] if it is there; else "
+            "take out what is not known: a component without a column is taken as zero.",
+        )
 
 
 def lightest(pose: tuple[str, ...], W: Array, use: Mask) -> tuple[Array, Mask, int]:

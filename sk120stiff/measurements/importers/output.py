@@ -97,7 +97,7 @@ def settings_for(
         if draft.loads.payload is not None:
             settings["payload"] = {"point": _point_entry(xyz)}
     else:
-        zero = {"zero": "shared"} if mode == "load pairs" else {}
+        zero = {"zero": draft.sheet.zero} if mode == "load pairs" else {}
         settings["displacement"] = {"frame": "base", **zero}
     if registered and fitted is not None:
         settings["registered"] = _registered(fitted, draft)

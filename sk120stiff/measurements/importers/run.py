@@ -9,7 +9,7 @@ import dataclasses
 import hashlib
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,8 @@ import numpy as np
 from sk120stiff.arrays import Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.importers.contract import Column, Formats, Role, Sheet, Source
+from sk120stiff.measurements.importers.before_load import with_before
+from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Source
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
@@ -33,6 +34,8 @@ from sk120stiff.measurements.importers.orientation import (
 )
 from sk120stiff.measurements.importers.orientation_columns import named
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
+from sk120stiff.measurements.importers.pairing import paired
+from sk120stiff.measurements.importers.rows_in_words import understood_words
 from sk120stiff.measurements.importers.several_files import joined
 from sk120stiff.measurements.importers.several_markers import (
     of_marker,
@@ -104,6 +107,7 @@ def import_readings(
     *,
     joints_file: Path | None = None,
     loads_file: Path | None = None,
+    before: Path | None = None,
     format_name: str | None = None,
     columns: Sequence[str] | None = None,
     sheet: str | None = None,
@@ -120,6 +124,7 @@ def import_readings(
         robot: What was measured.
         told: Units and places that the file does not say.
         joints_file, loads_file: Joints and loads, where they stand in files of their own.
+        before: Positions of the same poses without load; those of `path` are under it.
         format_name: The format, where the content leaves it open.
         columns: Names of the columns of a file without headers.
         sheet, topic, marker: Which sheet of a workbook, topic of a recording, marker of several.
@@ -134,14 +139,16 @@ def import_readings(
     told = told or Told()
     prismatic = tuple(n for n, s in zip(robot.actuated, robot.prismatic, strict=True) if s)
     paths = [path] if isinstance(path, str | os.PathLike) else path
-    _refuse_beside_several(paths, {"--joints-file": joints_file, "--loads-file": loads_file})
+    _refuse_beside_several(paths, {
+        "--joints-file": joints_file, "--loads-file": loads_file, "--before": before,
+    })  # fmt: skip
     sheets = [
         _sheet(
             Source(
                 Path(one), robot.actuated, "points", tuple(columns) if columns else None,
                 sheet, topic, marker,
             ),
-            formats, format_name, joints_file, loads_file,
+            formats, format_name, joints_file, loads_file, before, told,
         )
         for one in paths
     ]  # fmt: skip
@@ -203,12 +210,21 @@ def _refuse_beside_several(paths: Sequence[object], beside: dict[str, Path | Non
     given = [option for option, path in beside.items() if path is not None]
     if given and len(paths) > 1:
         raise InputError(
-            f"{len(paths)} files of positions, and one of {given[0].strip('-').split('-')[0]}",
+            f"{len(paths)} files of positions, and one of {_HOLDS[given[0]]}",
             where=given[0],
-            remedy="Import them one by one, or put the columns of both into each file.",
+            remedy="Import them one by one, or put the columns of both into each file."
+            if "--before" in given
+            else "If they are the same poses without and with a load, give the file without as "
+            "--before FILE, and the other alone. Else import them one by one, or put the columns "
+            "of both into each file.",
         )
     if not paths:
         raise InputError("no file is given", remedy="Give one file, or several of one campaign.")
+
+
+_HOLDS = {  # what the file of an option holds
+    "--joints-file": "joints", "--loads-file": "loads", "--before": "positions without load",
+}  # fmt: skip
 
 
 def _sheet(
@@ -217,12 +233,17 @@ def _sheet(
     name: str | None,
     joints_file: Path | None,
     loads_file: Path | None,
+    before: Path | None,
+    told: Told,
 ) -> Sheet:
     whole = opened(source)
     importer, why = formats.chosen(whole, name)
     sheet = importer.read(whole)
     if why == "as told":
         sheet = dataclasses.replace(sheet, title=importer.title, why=why)
+    if before is not None:
+        free = opened(dataclasses.replace(source, path=before, sheet=None))
+        sheet = with_before(sheet, formats.chosen(free, name)[0].read(free), told)
     others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
     own = any(c.meaning.startswith("joint ") for c in sheet.columns)
     if joints_file is None and not own and not source.path.is_dir() and is_workbook(source.data):
@@ -232,7 +253,7 @@ def _sheet(
             continue
         more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return named(unfolded(of_marker(sheet, source.marker)))
+    return named(unfolded(understood_words(of_marker(sheet, source.marker), told)))
 
 
 def opened(source: Source) -> Source:
@@ -257,87 +278,3 @@ def _assembled(
     file = settings_of(settings, path.with_suffix(".yaml"))
     digest = hashlib.sha256(repr((columns, settings)).encode()).hexdigest()
     return assembled(table, file, digest, robot.actuated, prismatic)
-
-
-SHARED = 0.5  # of the names of the shorter file, from which on names decide
-
-
-def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
-    """Each reading with its row of another file: by name, else by order.
-
-    Args:
-        points, other: The readings, and what belongs to them.
-        what: What the other file holds, as its option names it: joints or loads.
-
-    Raises:
-        InputError: A few names agree, or none and the files are not equally long.
-    """
-    mine, theirs = points.get("name"), other.get("name")
-    rows, others, how, lost = None, None, "order", list(points.skipped)
-    if mine and theirs and len(set(theirs.cells)) == len(theirs.cells):
-        place = {name: k for k, name in enumerate(theirs.cells)}
-        shared = set(mine.cells) & place.keys()
-        if len(shared) >= SHARED * min(len(set(mine.cells)), len(place)):
-            how = f"name ({mine.header}, {theirs.header})"
-            rows = [k for k, name in enumerate(mine.cells) if name in place]
-            others = [place[mine.cells[k]] for k in rows]
-            lost += [
-                (points.lines[k], f"{name} is not in {other.path.name}")
-                for k, name in enumerate(mine.cells)
-                if name not in place
-            ]
-            lost += [
-                (other.lines[k], f"{name} of {other.path.name} has no point")
-                for name, k in place.items()
-                if name not in mine.cells
-            ]
-        elif shared:
-            raise InputError(
-                f"only {len(shared)} of {len(place)} names agree ({min(shared)} among them): the "
-                f"{what} belong to other points",
-                where=f"{points.path} and {other.path}",
-                remedy="Give both files the same names, or take the names out of one of them: "
-                "rows then belong together by order.",
-            )
-    if rows is None or others is None:
-        if points.total != other.total:
-            raise InputError(
-                f"{points.total} points, but {other.total} rows of {what}, and their names "
-                "do not agree",
-                where=f"{points.path} and {other.path}",
-                remedy="Give both files the same names, or delete the rows that have no partner. "
-                "Which these are the robot tells: delete as many at the end, and the message says "
-                "from where on the rows are apart.",
-            )
-        place_of = {rank: k for k, rank in enumerate(other.rank)}
-        rows = [k for k, rank in enumerate(points.rank) if rank in place_of]
-        others = [place_of[points.rank[k]] for k in rows]
-        lost += [(line, f"{reason} ({other.path.name})") for line, reason in other.skipped]
-    if not rows:
-        raise InputError(f"no point has its {what}", where=f"{points.path} and {other.path}")
-    taken = {c.meaning for c in points.columns} | {"name"}
-    more = [replace(c, file=other.path) for c in other.columns if c.meaning not in taken]
-    twice = [c for c in other.columns if c.meaning in taken - {"name"}]
-    return replace(
-        points,
-        columns=(*_cut(points.columns, rows), *_cut(tuple(more), others)),
-        spare=(*_cut(points.spare, rows), *_cut(other.spare, others)),
-        lines=tuple(points.lines[k] for k in rows),
-        rank=tuple(points.rank[k] for k in rows),
-        skipped=tuple(lost),
-        unused=(
-            *points.unused,
-            *(f"{item} of {other.path.name}" for item in other.unused),
-            *(f"column {c.header} of {other.path.name}" for c in twice),
-        ),
-        notes=(
-            *points.notes,
-            f"The {what} are those of {other.path.name}, matched by {how}: {len(rows)} readings. "
-            f"Recognised as {other.title}: {other.why}.",
-            *(f"{other.path.name}: {n[0].lower()}{n[1:]}" for n in other.notes),
-        ),
-    )
-
-
-def _cut(columns: tuple[Column, ...], rows: list[int]) -> tuple[Column, ...]:
-    return tuple(replace(c, cells=tuple(c.cells[k] for k in rows)) for c in columns)

@@ -78,10 +78,16 @@ def unit_of(sheet: Sheet, column: Column, kind: str, told: Told) -> str:
         return "mm" if turns else str(column.unit)
     written = None if column.stated == PRESCRIBED else column.unit
     if written is None and said is None:
+        instead = column.stated.rpartition(": ")[2]  # what stands where its unit should
         raise InputError(
-            f"nobody said in which unit the column {column.header!r} is",
+            f"the unit {instead} of the column {column.header!r} is not known"
+            if instead
+            else f"nobody said in which unit the column {column.header!r} is",
             where=sheet.place(column),
-            remedy=f"Give {option} {offered}; no unit is guessed.",
+            remedy=f"Write one that is known there, or give {option} {offered} if no other column "
+            "of this kind has a unit."
+            if instead
+            else f"Give {option} {offered}; no unit is guessed.",
         )
     if written is not None and said is not None and plain(written) != said:
         raise InputError(

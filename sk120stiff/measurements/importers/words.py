@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from sk120stiff import units
+from sk120stiff.measurements.importers.gauge_units import counted_unit
 from sk120stiff.measurements.importers.masses import MASSES
 
 TS = ("tx", "ty", "tz")
@@ -54,6 +55,14 @@ _NAMES = {
     "date and time|datetime|zeit|uhrzeit|zeitstempel|datum uhrzeit|datum/uhrzeit|datum zeit|"
     "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
     "date": "date|datum|fecha",
+    "pose": "pose|pose id|pose no|pose nr|pose number|pose name|posture|stellung|stellung nr|"
+    "roboterstellung|messstellung",
+    "branch": "branch|load branch|ast|lastast|belastungsast",
+    "repeat": "repeat|repetition|rep|wdh|wdh nr|wiederholung|wiederholung nr|run|run no|durchgang|"
+    "durchlauf|répétition|ripetizione|repetición",
+    "direction": "direction|dir|load direction|richtung|lastrichtung|belastungsrichtung|sens|"
+    "direzione|dirección",
+    "force direction": "force direction|direction of force|kraftrichtung",
     "marker": "marker|reflector|smr",
     "station": "station|station id|station no|station name|instrument station|tracker station|"
     "instrument id|instrument setup|tracker setup|tracker position|standpunkt|standort|stazione",
@@ -63,16 +72,19 @@ _NAMES = {
     "control": "control|dimension",
     "measured": "meas|measured|actual|ist",
 }
-_OWN = ("payload", "load", "pose", "use", "series", "branch", "repeat")  # mean themselves
+_OWN = ("payload", "load", "use", "series")  # mean themselves
 _WORDS = {word: meaning for meaning, words in _NAMES.items() for word in words.split("|")} | {
     word: word for word in _OWN
 }
 _TEMPERATURE = re.compile(r"(?:\w+ )?(?:temp(?:erature|eratur)?)(?: \w+)?")
 JOINT = re.compile(
-    r"(?:q|j|jnt|joint|axis|achse|a|th|theta|θ)[ _]?(\d+)(?: (?:angle|pos(?:ition)?|value))?"
+    r"(?:q|j|jt|jnt|joint|gelenk|axis|achse|axe|asse|eje|ax|rax|a|th|theta|θ)[ _]?(\d+)"
+    r"(?: (?:angle|pos(?:ition)?|value))?"
 )
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*(.*)")
-_TAIL = re.compile(r"(.+?)(?:[ /]\s*(mm|um|µm|m|inch|in|deg|rad|°|N|kN|kg|s)|_(mm|um|deg|rad|kg))")
+_TAIL = re.compile(
+    r"(.+?)(?:[ /]\s*(mm|um|µm|m|inch|in|deg|rad|°|N|kN|daN|kgf|kp|kg|s)|_(mm|um|deg|rad|kg))"
+)
 _DEGREES = {"°C", "degC", "C", "ºC"}
 _COVERAGE = re.compile(r"k ?= ?([123](?:\.\d+)?)")
 _FILE_UNITS = {
@@ -83,11 +95,22 @@ _FILE_UNITS = {
               "radian": "rad"},
 }  # fmt: skip
 
-_IN_WORDS = {
+UNITS_IN_WORDS = {  # words of units, as headers and rows of units have them
     word: unit
     for known in (
         *_FILE_UNITS.values(),
-        {"seconds": "s", "second": "s", "sec": "s", "newtons": "N", "newton": "N"},
+        {
+            "seconds": "s",
+            "second": "s",
+            "sec": "s",
+            "newtons": "N",
+            "newton": "N",
+            "grad": "deg",
+            "mikrometer": "um",
+            "micrometers": "um",
+            "micrometres": "um",
+            "microns": "um",
+        },
     )
     for word, unit in known.items()
     if len(word) > 2
@@ -98,7 +121,7 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
     """Name and unit of a header as people write it: ``X (mm)``, ``X [Meters]``, ``x_mm``."""
     match = _BRACKETS.fullmatch(header.strip())
     if match:
-        unit = _IN_WORDS.get(match[2].strip().lower(), match[2].strip())
+        unit = UNITS_IN_WORDS.get(match[2].strip().lower(), match[2].strip())
         if is_unit(unit):
             return f"{match[1]} {match[3]}".strip(), unit
     tail = _TAIL.fullmatch(header.strip())
@@ -108,8 +131,9 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
 
 
 def is_unit(text: str) -> bool:
-    """Is this the name of a unit, that of a temperature or a mass among them?"""
-    return text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
+    """Is this the name of a unit, that of a temperature, a mass or a dial gauge among them?"""
+    known = text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
+    return known or counted_unit(text) is not None
 
 
 def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] | None:
@@ -117,8 +141,8 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
 
     ``x y z`` positions; ``measured x``, ``nominal x``, ``deviation x``; ``dx`` displacements;
     ``unloaded x``, ``loaded x`` both of a pose; ``sx`` standard uncertainties; ``fx mx payload
-    load`` loads; ``tcp x`` the marker in the tool frame; ``qw``, ``orientation ...``
-    axes, ``turn x`` how a load turned them; ``joint 3``; and labels.
+    load`` loads, ``direction`` of a force or branch; ``tcp x`` the marker in the tool frame;
+    ``qw``, ``orientation ...`` axes, ``turn x`` how a load turned them; ``joint 3``; and labels.
     """
     if name in actuated:
         return f"joint {actuated.index(name) + 1}", 1.0

@@ -6,7 +6,7 @@ import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers import Sheet
-from sk120stiff.measurements.importers.run import paired
+from sk120stiff.measurements.importers.pairing import paired
 from tests.measurements.importers.reading import sheet_of
 
 POINTS = "name,x[mm],y[mm],z[mm]\nA,1,2,3\nB,4,5,6\nC,,,\nD,7,8,9\n"

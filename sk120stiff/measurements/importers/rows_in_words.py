@@ -1,0 +1,217 @@
+"""What columns of words say of rows: the branch, the repetition, the direction of a force."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sk120stiff import units
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.loads import FORCES, STANDARD_GRAVITY
+from sk120stiff.measurements.importers.masses import MASSES
+from sk120stiff.measurements.importers.told import Told, numbers
+from sk120stiff.measurements.importers.words import unit_of_header
+
+_BRANCHES = {
+    "load": "load|loading|up|upward|upwards|rising|increasing|auf|aufwärts|hoch|belastet|belastung|"
+    "belasten|belastend|steigend|zunehmend|charge|carico|carga",
+    "unload": "unload|unloading|down|downward|downwards|falling|decreasing|ab|abwärts|runter|"
+    "entlastet|entlastung|entlasten|entlastend|fallend|abnehmend|décharge|scarico|descarga",
+}
+_BRANCH_OF = {word: branch for branch, words in _BRANCHES.items() for word in words.split("|")}
+_EMPTY = ("", "-", "--", "none", "n/a", "0")  # no direction: in rows without load
+_ALONG = re.compile(
+    r"f?\s*(?P<before>[+-]?)\s*f?(?P<axis>[xyz])\s*(?P<after>[+-]?)(?:[ -]?(?:axis|achse))?",
+    re.IGNORECASE,
+)
+_SIZES = re.compile(
+    r"(?:applied |test |prüf|mess|zug|druck)?(?:f|force|kraft|last|load|gewicht|masse|mass|weight)",
+    re.IGNORECASE,
+)
+
+
+def understood_words(sheet: Sheet, told: Told) -> Sheet:
+    """The sheet with branches and repetitions in words of ours, and forces from their direction.
+
+    Raises:
+        InputError: A direction that does not go with the load beside it.
+    """
+    sheet = _with_branches(sheet)
+    sheet = _with_repeats(sheet)
+    direction = sheet.get("force direction") or sheet.get("direction")
+    if direction is None:
+        return sheet
+    if all(_along(cell) or _empty(cell) for cell in direction.cells):
+        return _with_forces(sheet, direction, told)
+    why = (
+        "its words are neither axes (-Z, +X) nor those of loading and unloading (load and unload, "
+        "up and down, auf and ab, Belastung and Entlastung)"
+    )
+    return _left_out(sheet, direction, why)
+
+
+def _with_branches(sheet: Sheet) -> Sheet:
+    column = sheet.get("branch") or sheet.get("direction")
+    if column is None:
+        return sheet
+    words = [cell.strip().lower() for cell in column.cells]
+    known = {word for word in words if not _empty(word)}
+    if not known or not known <= _BRANCH_OF.keys():
+        return sheet
+    cells = tuple("" if _empty(word) else _BRANCH_OF[word] for word in words)
+    ours = replace(column, meaning="branch", cells=cells)
+    new = replace(sheet, columns=tuple(ours if c is column else c for c in sheet.columns))
+    foreign = [word for word in dict.fromkeys(column.cells) if word.lower() in known]
+    if set(foreign) <= {"load", "unload"}:
+        return new
+    pairs = [f"{word} is {_BRANCH_OF[word.lower()]}" for word in foreign]
+    return _noting(new, f"The column {column.header} tells the branch: {', '.join(pairs)}.")
+
+
+def _with_repeats(sheet: Sheet) -> Sheet:
+    """Repetitions as whole numbers, as the files of measurements have them."""
+    column = sheet.get("repeat")
+    if column is None or not all(column.cells):
+        return sheet
+    if all(is_number(cell) and float(cell).is_integer() for cell in column.cells):
+        cells = tuple(str(int(float(cell))) for cell in column.cells)
+        return _swapped(sheet, column, cells)
+    count = {label: k for k, label in enumerate(dict.fromkeys(column.cells), 1)}
+    new = _swapped(sheet, column, tuple(str(count[cell]) for cell in column.cells))
+    shown = listed([f"{label} is {k}" for label, k in list(count.items())[:3]])
+    return _noting(new, f"The column {column.header} counts repetitions: {shown}.")
+
+
+def _with_forces(sheet: Sheet, direction: Column, told: Told) -> Sheet:
+    """The components of a force that is stated by its size and its direction.
+
+    Raises:
+        InputError: As `understood_words`.
+    """
+    components = [c for name in FORCES if (c := sheet.get(name))]
+    if components:
+        _refuse_another_axis(sheet, direction, components)
+        return _left_out(sheet, direction, "the components of the force stand beside it")
+    size = _size(sheet, direction, told)
+    if size is None:
+        return _left_out(sheet, direction, "a direction, and no column says how large the load is")
+    values, texts, unit, stated = _as_force(sheet, size, told)
+    cells: dict[str, list[str]] = {name: [] for name in FORCES}
+    for row, (word, value, text) in enumerate(zip(direction.cells, values, texts, strict=True)):
+        along = _along(word)
+        if along is None and value != 0.0:
+            raise InputError(
+                f"a load of {text}, and no direction",
+                where=sheet.place(direction, row),
+                remedy="Write its direction: -Z, +X and so on; or 0 if there was none.",
+            )
+        axis, sign = along or ("x", "")
+        if sign and value < 0.0:
+            raise InputError(
+                f"a load of {text} along {word}: a sign stands at both",
+                where=sheet.place(direction, row),
+                remedy="Write the size without a sign, or the direction without one: Z.",
+            )
+        for name in FORCES:
+            own = text if name[1] == axis else "0"
+            cells[name].append(f"-{own.removeprefix('+')}" if sign == "-" and own != "0" else own)
+    header = f"{size.header}, {direction.header}"
+    made = [
+        Column(header, name, unit, stated, tuple(cells[name]), 1.0, size.file) for name in FORCES
+    ]
+    shown = [word for word in dict.fromkeys(direction.cells) if not _empty(word)]
+    new = replace(
+        sheet,
+        columns=(*(c for c in sheet.columns if c is not size and c is not direction), *made),
+        spare=tuple(c for c in sheet.spare if c is not size),
+    )
+    mass = " A mass pulls with its weight along that direction." if unit == "SI" else ""
+    return _noting(
+        new,
+        f"fx, fy, fz are made of {size.header}, the size of the force on the robot, and "
+        f"{direction.header}, its direction ({', '.join(shown)}).{mass}",
+    )
+
+
+def _refuse_another_axis(sheet: Sheet, direction: Column, components: Sequence[Column]) -> None:
+    """One component alone, called as an axis that the direction does not name, is no component."""
+    if len(components) != 1:
+        return
+    (only,) = components
+    for row, cell in enumerate(direction.cells):
+        along = _along(cell)
+        if along and along[0] != only.meaning[1]:
+            raise InputError(
+                f"{cell} is no direction of {only.header}, a force along {only.meaning[1]}",
+                where=sheet.place(direction, row),
+                remedy=f"If {only.header} is the size of the force, call it force; if it is the "
+                f"component, take the column {direction.header} out.",
+            )
+
+
+def _size(sheet: Sheet, direction: Column, told: Told) -> Column | None:
+    """The column of how large the load is; one that counts --wrench is none.
+
+    Raises:
+        InputError: There are several.
+    """
+    kinds = ("payload", "load") if told.wrench is None else ("payload",)
+    loads = [c for c in sheet.columns if c.meaning in kinds]
+    more = [c for c in sheet.spare if _SIZES.fullmatch(unit_of_header(c.header)[0].strip())]
+    more += [
+        c
+        for c in sheet.spare
+        if c not in more and c.unit and (c.unit in MASSES or units.is_kind(c.unit, "force"))
+    ]
+    found = [*loads, *more]
+    if len(found) > 1:
+        raise InputError(
+            f"{listed([c.header for c in found])} may each be the size of the force",
+            where=sheet.place(direction),
+            remedy=f"Keep the one that acts along {direction.header}.",
+        )
+    return found[0] if found else None
+
+
+def _as_force(
+    sheet: Sheet, size: Column, told: Told
+) -> tuple[Sequence[float], tuple[str, ...], str | None, str]:
+    """Values and texts of the size, its unit and where that is stated; a mass by its weight."""
+    if size.unit not in MASSES and not (size.unit is None and told.load == "kg"):
+        return numbers(sheet, size).tolist(), size.cells, size.unit, size.stated
+    own = replace(size, factor=size.factor if size.meaning else MASSES[size.unit or "kg"])
+    newtons = (numbers(sheet, own) * STANDARD_GRAVITY).tolist()
+    stated = f"{size.stated or '--load'}: {size.unit or 'kg'}"
+    return newtons, tuple(repr(value) if value else "0" for value in newtons), "SI", stated
+
+
+def _along(cell: str) -> tuple[str, str] | None:
+    """The axis that a cell names, and its sign or none."""
+    match = _ALONG.fullmatch(cell.strip())
+    if match is None or (match["before"] and match["after"]):
+        return None
+    return match["axis"].lower(), match["before"] or match["after"]
+
+
+def _empty(cell: str) -> bool:
+    return cell.strip().lower() in _EMPTY
+
+
+def _swapped(sheet: Sheet, column: Column, cells: tuple[str, ...]) -> Sheet:
+    new = replace(column, cells=cells)
+    return replace(sheet, columns=tuple(new if c is column else c for c in sheet.columns))
+
+
+def _left_out(sheet: Sheet, column: Column, why: str) -> Sheet:
+    return replace(
+        sheet,
+        columns=tuple(c for c in sheet.columns if c is not column),
+        unused=(*sheet.unused, f"column {column.header}: {why}"),
+    )
+
+
+def _noting(sheet: Sheet, sentence: str) -> Sheet:
+    return replace(sheet, notes=(*sheet.notes, sentence))
