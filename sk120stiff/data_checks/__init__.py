@@ -4,6 +4,7 @@ from sk120stiff.data_checks.copies import repeated_rows, without_copies
 from sk120stiff.data_checks.look import look, refuse_slips, refuse_unbelievable
 from sk120stiff.data_checks.search import find_slip
 from sk120stiff.data_checks.single_rows import place_of, slips_of_rows
+from sk120stiff.data_checks.stuck import without_stuck
 
 __all__ = [
     "find_slip",
@@ -14,4 +15,5 @@ __all__ = [
     "repeated_rows",
     "slips_of_rows",
     "without_copies",
+    "without_stuck",
 ]

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.data_checks import refuse_slips, without_copies
+from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
@@ -94,6 +94,9 @@ def explain(
         >>> answer.verdict
         'none'
     """
+    measurements, told = without_stuck(measurements)
+    if told:
+        warnings.warn(told, ToolkitWarning, stacklevel=3)
     if measurements.absolute is not None:
         if measurements.absolute.channels.displacement is not None:
             refuse_slips(model, measurements)
