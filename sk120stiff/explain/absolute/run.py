@@ -19,6 +19,7 @@ from sk120stiff.explain.absolute.accounts import (
     suspects_of,
 )
 from sk120stiff.explain.absolute.advice import detectable, probabilities
+from sk120stiff.explain.absolute.balancer import balancer_for, balancing
 from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.choose import (
     Chosen,
@@ -133,7 +134,15 @@ def explain_positions(
             final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
     final = beside_laws(final, linear, found.order, laws)
     final = replace(
-        final, notes=(*hangs, *pushed, *final.notes, *pounds(final), *creeping(final, readings))
+        final,
+        notes=(
+            *hangs,
+            *pushed,
+            *final.notes,
+            *pounds(final),
+            *creeping(final, readings),
+            *balancing(final),
+        ),
     )
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
     named, following = _named(linear, found, final, options)
@@ -263,6 +272,9 @@ def _named(
         others = [candidates[c] for c in own]
         exact = never_told(final, there, candidates[e], others) if there and others else ()
         ids = tuple(other.id for other in others)
+        balancer = balancer_for(candidates[e], final)
+        if balancer is not None and balancer not in ids:
+            ids, exact = (*ids, balancer), (*exact, balancer)
         named.append(Named(candidates[e], ids, exact, probability, gain(linear, found.order, e)))
         pairs += [(candidates[e], other) for other in others if other.id not in exact][:1]
     following = None if there is None else next_poses(final, there, pairs)
