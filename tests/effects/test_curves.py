@@ -76,6 +76,27 @@ def test_presliding_is_a_maxwell_slip_gear(robot):
     assert np.ptp(found) > h
 
 
+@pytest.mark.parametrize("reach", [2e-5, 1e-4, 2e-3], ids=["slips early", "slips", "sticks"])
+def test_an_arm_that_was_loaded_before_its_zero_begins_in_its_loop(robot, reach):
+    """The ladder is gone through ten times before it is read; then friction's part is a loop."""
+    K, h = 2e6, 3e-5
+    gear = MaxwellSlip(JOINT, {"half_width": h}, {"shares": (1.0,), "reach": (reach,)})
+    ladder = np.array([100, 200, 300, 200, 100, 0], float)
+    branch = ("load",) * 3 + ("unload",) * 3
+    load_cases = pushed(robot, ladder, branch)
+    torque = FrictionHysteresis(JOINT).load_torque(load_cases)
+    advance, state, twists = gear.advance(K), None, []
+    for now in (0.0, *(10 * torque[:, 0].tolist()), *torque[:, 0]):
+        twist, state = advance(state, np.array([now]))
+        twists.append(float(twist[0]) - now / K)
+    slips = K * reach + h * K
+    law = FrictionHysteresis(JOINT, reaches=(slips,), cycled=True)
+    found = law.elongation(torque, load_cases, np.array([h])).value[:, 0]
+    begun = -len(ladder) - 1  # where the last ladder but one ended, its zero is read
+    assert np.allclose(found, np.array(twists[begun + 1 :]) - twists[begun], rtol=0, atol=1e-12)
+    assert found[-1] == pytest.approx(0.0, abs=1e-12)
+
+
 def test_between_repeats_the_load_is_off(robot):
     """What slipped under the first load is still there when it comes again."""
     load_cases = pushed(robot, [300.0, 300.0], repeat=np.array([1, 2]))
@@ -90,6 +111,7 @@ def test_between_repeats_the_load_is_off(robot):
         LostMotion(JOINT, flanks=(12.5,)),
         LostMotion(JOINT, flanks=(0.0, 30.0, 120.0), sided=True),
         FrictionHysteresis(JOINT, reaches=(15.0, 45.0)),
+        FrictionHysteresis(JOINT, reaches=(15.0, 45.0), cycled=True),
         LinkBending("link_3_u", taper=-0.5, roll=True, planes=True),
         LinkBending("link_3_u", taper=0.6),
         BaseRocking("base_link", askew=True),

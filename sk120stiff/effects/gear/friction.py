@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects.base import (
     Elongation,
     Switching,
@@ -22,7 +22,7 @@ from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot
 
 REACHES = (0.02, 0.06, 0.15, 0.4)  # of the largest torque: after which a gear may start to slip
-HALF, REACH = "half_width", "half_width_presliding_"
+HALF, REACH, CYCLED = "half_width", "half_width_presliding_", "half_width_cycled_"
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,17 @@ class FrictionHysteresis(GearEffect, Switching):
 
         p_k(t) = min(max(p_k(t − 1) + τ(t) − τ(t − 1), −r_k), r_k),   p_k(0) = 0
 
+    An arm that was loaded and unloaded before its zero was read, as laboratories do until the loop
+    closes, begins where that left it: p_k = −min(r_k, |τ|/2) sign(τ), τ the largest of the ladder.
+
     Attributes:
         reaches: Torques r_k [N·m] after which it slips; 0: at once, on the branch that the readings
             tell.
+        cycled: The loads went up and down before every zero reading.
     """
 
     reaches: tuple[float, ...] = (0.0,)
+    cycled: bool = False
     name: ClassVar[str] = "friction_hysteresis"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = (
@@ -52,14 +57,19 @@ class FrictionHysteresis(GearEffect, Switching):
     axes: ClassVar[str] = "the axis of the joint itself"
     also: ClassVar[str] = (
         f"{REACH}20: after a reversal it sticks until the torque has changed by r = 20 N*m; "
-        "several add up"
+        f"several add up. {CYCLED}20: the same where the load went up and down before the zero"
     )
     twins: ClassVar[tuple[str, ...]] = (LostMotion.name,)  # while loads only grow
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The friction of one joint, pre-sliding where names of parameters tell."""
-        told = tuple(sorted(torques_told(options.shape, REACH, "torque of slipping")))
+        told, cycled = (
+            tuple(sorted(torques_told(options.shape, head, "torque of slipping")))
+            for head in (REACH, CYCLED)
+        )
+        if cycled:
+            return cls(where, scale_of(robot), cycled, cycled=True)
         jump = HALF in options.shape or not told
         return cls(where, scale_of(robot), (*([0.0] if jump else []), *told))
 
@@ -73,20 +83,22 @@ class FrictionHysteresis(GearEffect, Switching):
         """Half width h of the loop, or of each part that slips after another torque."""
         return tuple(
             ParameterSpec(
-                f"{REACH}{r:g}" if r else HALF,
+                f"{CYCLED if self.cycled else REACH}{r:g}" if r else HALF,
                 "rad",
                 "rad",
                 plausible=5e-4,
                 typical=5e-5,
                 lower=0.0,
                 meaning="h, half the width of the loop"
-                + (f" of the part that slips after {r:g} N*m" if r else ""),
+                + (f" of the part that slips after {r:g} N*m" if r else "")
+                + (", the load having gone up and down before" if self.cycled else ""),
             )
             for r in self.reaches
         )
 
     def other_laws(self, load_cases: LoadCases) -> tuple[FrictionHysteresis, ...]:
-        """Pre-sliding over each of `REACHES` of the largest torque, and over all of them.
+        """Pre-sliding over each of `REACHES` of the largest torque, and over all of them; the
+        arm having been loaded before its zero was read, or not.
 
         Where no load is taken off step by step, nothing tells one from another.
         """
@@ -94,23 +106,28 @@ class FrictionHysteresis(GearEffect, Switching):
         if largest <= 0.0 or not (load_cases.branch < 0.0).any():
             return ()
         reaches = tuple(float(f"{share * largest:.3g}") for share in REACHES)
-        single = [replace(self, reaches=(r,)) for r in reaches]
-        laws = (*single, replace(self, reaches=reaches), replace(self, reaches=(0.0,)))
+        shapes = (*((r,) for r in reaches), reaches)
+        laws = (
+            *(replace(self, reaches=r, cycled=cycled) for cycled in (False, True) for r in shapes),
+            replace(self, reaches=(0.0,), cycled=False),
+        )
         return tuple(law for law in laws if law != self)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
-        shapes = [
-            -held_back(torques[:, 0], r, load_cases) / r
-            if r
-            else -load_cases.branch * np.sign(torques[:, 0])
-            for r in self.reaches
-        ]
+        slips = np.array([r for r in self.reaches if r])
+        held = iter(
+            held_back(torques[:, 0], slips, load_cases, cycled=self.cycled) / slips[:, None]
+        )
+        at_once = -load_cases.branch * np.sign(torques[:, 0])
+        shapes = [-next(held) if r else at_once for r in self.reaches]
         return constant_in_torque(np.stack(shapes, axis=-1), values)
 
 
-def held_back(torque: Array, reach: float, load_cases: LoadCases) -> Array:
-    """(N,) what friction holds back at every reading beyond its zero reading [N·m].
+def held_back(
+    torque: Array, reaches: Array, load_cases: LoadCases, *, cycled: bool = False
+) -> Array:
+    """(k, N) what friction holds back at every reading beyond its zero reading [N·m].
 
     Every pose begins without load and without memory; its loads follow one another in the order of
     the readings, with none in between where a zero was read or a repeat begins. Before a series
@@ -118,19 +135,38 @@ def held_back(torque: Array, reach: float, load_cases: LoadCases) -> Array:
 
     Args:
         torque: (N,) torque of the load [N·m].
-        reach: Torque after which it slips [N·m].
+        reaches: (k,) torques after which parts of the gear slip [N·m].
         load_cases: The readings, in whose order the torques came.
+        cycled: Before every zero reading the loads that follow it had been on and off.
     """
     steps, zero, own = load_cases.history
-    before = np.zeros(steps.shape[1])
-    held = np.zeros(steps.shape[1])
-    idle = np.ones(steps.shape[1], dtype=bool)
-    falls = load_cases.branch < 0.0
-    seen = np.zeros(steps.shape)
-    for k, rows in enumerate(steps):
-        now = np.where(rows == IDLE, 0.0, torque[rows])
-        fresh = idle & (rows != IDLE) & falls[rows]
-        held = np.where(fresh, -reach * np.sign(now), np.clip(held + now - before, -reach, reach))
-        seen[k], before, idle = held, now, rows == IDLE
+    idle = steps == IDLE
+    torques = np.where(idle, 0.0, torque[steps])
+    change = np.diff(torques, axis=0, prepend=0.0)
+    fresh = np.zeros(steps.shape, dtype=bool)  # the first load of a series, where it falls already
+    fresh[1:] = idle[:-1] & ~idle[1:] & (load_cases.branch < 0.0)[steps[1:]]
+    onset = 0.5 * _largest_of_run(torques, idle) if cycled else None
+    reach = reaches[:, None]
+    held = np.zeros((len(reaches), steps.shape[1]))
+    seen = np.zeros((len(steps), *held.shape))
+    for k in range(len(steps)):
+        held = np.minimum(np.maximum(held + change[k], -reach), reach)
+        if fresh[k].any():
+            held = np.where(fresh[k], -reach * np.sign(torques[k]), held)
+        if onset is not None and idle[k].any():
+            closed = -np.minimum(np.maximum(onset[k], -reach), reach)
+            held = np.where(idle[k], closed, held)
+        seen[k] = held
     pose = load_cases.pose_column
-    return np.asarray(seen[own, pose] - seen[zero, pose])
+    return np.asarray((seen[own, :, pose] - seen[zero, :, pose]).T)
+
+
+def _largest_of_run(torques: Array, idle: Mask) -> Array:
+    """(S, g) at every idle step the largest torque until the next one, with its sign."""
+    largest, peak = np.zeros(torques.shape), np.zeros(torques.shape[1])
+    for k in range(len(torques) - 1, -1, -1):
+        peak = np.where(np.abs(torques[k]) > np.abs(peak), torques[k], peak)
+        if idle[k].any():
+            largest[k] = np.where(idle[k], peak, 0.0)
+            peak = np.where(idle[k], 0.0, peak)
+    return largest
