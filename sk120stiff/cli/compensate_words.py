@@ -11,7 +11,7 @@ from sk120stiff.cli.tables import table
 from sk120stiff.cli.uncertainty import NO_REMAINDER, sentences
 from sk120stiff.effects import Viewpoint
 from sk120stiff.errors import InputError, two_digits, warn
-from sk120stiff.model import Model
+from sk120stiff.model import Model, marker_off
 from sk120stiff.model.predicted import blame_reason
 from sk120stiff.plan import Cell, feasible
 from sk120stiff.robot import Robot
@@ -109,12 +109,12 @@ def point_words(model: Model) -> tuple[str, ...]:
             "apart from its place counted there: how far that is from the base of the robot's "
             "controller is in no ±; register the base of the cell anew, or measure and correct it.",
         )
-    off = [p.internal for p in model.parameters if p.effect.name == "tool_offset"]
-    if not off or np.linalg.norm(off) < FAR_OFF:
+    off = marker_off(model)
+    if off < FAR_OFF:
         return said
     return (
         *said,
-        f"The marker sat {1e3 * np.linalg.norm(off):.4g} mm off its stated place (tool_offset): "
+        f"The marker sat {1e3 * off:.4g} mm off its stated place (tool_offset): "
         "that is a matter of the measurement. What is brought onto the path is the stated point.",
     )
 

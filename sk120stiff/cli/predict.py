@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.arrays import Mask, rms
+from sk120stiff.cli.compensate_words import FAR_OFF
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
 from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
@@ -19,7 +20,7 @@ from sk120stiff.errors import warn
 from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.identify.absolute.placed_anew import placed_anew
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model, Predicted, predict, warn_of_far_bend
+from sk120stiff.model import Model, Predicted, marker_off, predict, warn_of_far_bend
 from sk120stiff.model.predicted import (
     predict_what_holds,
     prediction_table,
@@ -70,6 +71,12 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     }
     parts = _parts(predicted, readings, left, per_pose, int(used.sum()))
     parts += sentences(believed, predicted.std_parameters, predicted.std_remainder)
+    off = marker_off(believed)
+    if off >= FAR_OFF:
+        parts.append(
+            f"The point is taken {1e3 * off:.4g} mm off its stated place, where the marker of the "
+            "calibration sat (tool_offset); of another point, take that effect out of the model."
+        )
     warn_of_far_bend(believed, predicted.displacement)
     lost = [reason for reason in unknown_reasons(predicted) if reason]
     if lost:

@@ -156,8 +156,9 @@ def _cells(std: Array) -> list[str]:
 
 
 def _seen(values: Array) -> Array:
-    """The same without what is rounding beside the largest of them."""
-    return np.where(np.abs(values) > ROUNDING * np.abs(values).max(), values, 0.0)
+    """The same without what is rounding beside the largest known of them."""
+    largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    return np.where(np.abs(values) > ROUNDING * largest, values, 0.0)
 
 
 def _if_it_exists(matrix: Array) -> Array | None:

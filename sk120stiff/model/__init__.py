@@ -3,6 +3,7 @@
 from sk120stiff.model.budget import Share, joint_shares, moved_by, shares, with_own_errors
 from sk120stiff.model.compliance import (
     ModelCompliance,
+    marker_off,
     model_compliance,
     probing_poses,
     seen_from,
@@ -58,6 +59,7 @@ __all__ = [
     "joint_spring_model",
     "loaded_stiffness",
     "loaded_uncertainty",
+    "marker_off",
     "model_compliance",
     "model_from_text",
     "model_text",

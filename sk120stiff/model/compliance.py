@@ -17,6 +17,7 @@ from sk120stiff.stiffness import ConstantCompliance, ElasticLaw, Weight, symmetr
 from sk120stiff.stiffness.kernel.folding import Fold, fold
 
 PROBES = 16  # random poses at which the compliance is compared
+MARKER = "tool_offset"  # the effect that is where a marker sits
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,6 +172,11 @@ def without_marker(model: Model) -> Model:
     arm = model.physical()
     marks = {e for e in arm.effects if isinstance(e, Geometric) and e.of_marker}
     return replace(arm, parameters=tuple(p for p in arm.parameters if p.effect not in marks))
+
+
+def marker_off(model: Model) -> float:
+    """How far the measured marker was found off its stated place [m]; 0 where nobody looked."""
+    return float(np.linalg.norm([p.internal for p in model.parameters if p.effect.name == MARKER]))
 
 
 def probing_poses(robot: Robot) -> Array:

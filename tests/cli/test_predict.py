@@ -101,3 +101,17 @@ def test_bad_input(run) -> None:
         outcome = run("predict", model, data)
         assert outcome.code == 2
         assert hint in outcome.stderr
+
+
+def test_where_the_marker_of_a_calibration_sat_is_said(run, tmp_path: Path) -> None:
+    """It moves the point of other readings too, and they may be of another point."""
+    model = tmp_path / "model.yaml"
+    offset = "offset_x: {value: 0.03, unit: m}, offset_z: {value: 0.04, unit: m}"
+    model.write_text(
+        f"{Path(MODEL).read_text()}  - name: tool_offset\n    where: tool0\n"
+        f"    parameters: {{{offset}}}\n"
+    )
+    for used, told in ((str(model), True), (MODEL, False)):
+        found = run("predict", used, str(DATA / "table2_measured.csv"))
+        assert found.code == 0, found.stderr
+        assert ("50 mm off its stated place" in " ".join(found.stdout.split())) == told

@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sk120stiff as sk
 from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.robot import load_robot
+from tests.absolute.test_payload_place import hung, robot_of
 from tests.corpus.robots import example
 
 UPPER, FORE = 0.5, 0.4  # m
@@ -283,3 +285,17 @@ def test_what_yields_under_the_load_alone_is_told_too(run, two_links, tmp_path: 
 def test_rounding_is_printed_as_zero(run) -> None:
     options = ("--pose", "0,-90,90,0,90,0 deg", "--wrench", "0,0,-50 N")
     assert "e-1" not in run("stiffness", "ur5e", *options).stdout
+
+
+def test_what_is_not_known_of_a_deflection_is_no_zero(tmp_path: Path, run) -> None:
+    path = hung(tmp_path, [0.0, 30.0, 60.0], "payload: {point: {xyz: [60, -40, 250], unit: mm}}\n")
+    robot, data = robot_of(path), sk.read(path)
+    sk.explain(sk.Model(robot), data).save(tmp_path)
+    pose = ",".join(f"{angle:.4f}" for angle in data.joints[0])
+    wrench = "0, 200, 0 N"
+    told = run(
+        "stiffness", str(tmp_path / "model.yaml"), "--pose", f"{pose} rad", "--wrench", wrench
+    )
+    assert told.code == 0, told.stderr
+    (row,) = [line for line in told.stdout.splitlines() if "one standard deviation" in line]
+    assert row.split()[-3:] == ["?", "?", "?"]
