@@ -106,7 +106,8 @@ def test_bad_input(run) -> None:
 def test_where_the_marker_of_a_calibration_sat_is_said(run, tmp_path: Path) -> None:
     """It moves the point of other readings too, and they may be of another point."""
     model = tmp_path / "model.yaml"
-    offset = "offset_x: {value: 0.03, unit: m}, offset_z: {value: 0.04, unit: m}"
+    off = zip("xyz", (0.03, 0.0, 0.04), strict=True)
+    offset = ", ".join(f"offset_{axis}: {{value: {size}, unit: m}}" for axis, size in off)
     model.write_text(
         f"{Path(MODEL).read_text()}  - name: tool_offset\n    where: tool0\n"
         f"    parameters: {{{offset}}}\n"
