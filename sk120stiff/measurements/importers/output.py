@@ -43,7 +43,7 @@ def settings_for(
         "base_frame": robot.base_frame,
         "tool_frame": robot.tool_frame,
     }
-    xyz = point[0]
+    xyz, sensed = point[0], bool(np.any(draft.loads.wrench[:, 3:]))
     said = "The marker and the load sit at the origin of the tool frame."
     if several and not known:
         said = (
@@ -70,12 +70,11 @@ def settings_for(
             f"The marker sits at ({shown}) mm in the tool frame: the best place for these "
             "positions."
         )
-        said += (
-            " The load is taken to act there, too; where else it does is what force.point or "
-            "payload.point in the YAML file says."
-            if draft.loads.taken
-            else ""
-        )
+        if draft.loads.taken and not sensed:
+            said += (
+                " The load is taken to act there, too; where else it does is what force.point or "
+                "payload.point in the YAML file says."
+            )
     elif mode == "positions":
         said = "Where the marker sits is not known; the fit finds it."
     places = draft.markers[1]
@@ -88,7 +87,13 @@ def settings_for(
         settings["point"] = _point_entry(xyz)
     if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
         settings["force"] = {"frame": draft.loads.frame}
-        if mode == "positions" and not several and not known and xyz.any():
+        if mode == "positions" and sensed and told.point is None:
+            settings["force"]["point"] = _point_entry(np.zeros(3))
+            said += (
+                " Forces and moments are taken about the origin of the tool frame, where a sensor "
+                "on the flange has them; about another point, write it under force.point."
+            )
+        elif mode == "positions" and not several and not known and xyz.any():
             settings["force"]["point"] = _point_entry(xyz)
     if mode == "positions":
         settings["position"] = {"frame": "base" if registered else "unknown"}

@@ -223,3 +223,30 @@ def test_headers_that_name_something_else_are_not_passed_over(tmp_path: Path) ->
     path.write_text(path.read_text().replace("foo,bar,baz", "tx,ty,tz"))
     found = import_readings(path, load_robot(ur5(), tool="tool0"), Told(length="mm"))
     assert found.fitted is not None and found.fitted.rms < 2e-3
+
+
+@pytest.mark.parametrize("moments", [True, False])
+def test_moments_are_those_about_the_flange_and_not_about_the_marker(
+    tmp_path: Path, moments: bool
+) -> None:
+    """A sensor between flange and tool has them; a cable that pulls has none."""
+    path = tmp_path / "sensed.csv"
+    head = [
+        "x[mm]",
+        "y[mm]",
+        "z[mm]",
+        *(f"J{k}[deg]" for k in range(1, 7)),
+        "Fx[N]",
+        "Fy[N]",
+        "Fz[N]",
+    ]
+    rng = np.random.default_rng(1)
+    loads = rng.normal(size=(len(SEEN.q), 6 if moments else 3))
+    head += ["Mx[N*m]", "My[N*m]", "Mz[N*m]"] if moments else []
+    rows = np.column_stack([SEEN.x, SEEN.q, loads])
+    np.savetxt(path, rows, delimiter=",", header=",".join(head), comments="", fmt="%.6f")
+    told = Told(forces="base")
+    found = import_readings(path, load_robot(ur5(), tool="tool0"), told)
+    point = found.readings.force_point
+    assert (np.linalg.norm(point) == 0.0) == moments
+    assert ("about the origin of the tool frame" in " ".join(found.said)) == moments
