@@ -10,6 +10,20 @@ POSITIONS = tests("absolute", "linear", "choose", "names")
 
 OF_POSITIONS: tuple[Fault, ...] = (
     *of(
+        "identify/absolute/force_axes.py", *tests("absolute", "force_axes"),
+        forces_never_negated=("for sign in (1.0, -1.0)", "for sign in (1.0,)"),
+        forces_that_turn_the_other_way=("np.sin(turn) * (sine - weight)", "-np.sin(turn) * (sine - weight)"),
+        other_axes_as_good_as_any=("AS_GOOD * least", "np.inf * least"),
+    ),
+    *of(
+        "identify/absolute/not_named.py", *tests("absolute", "not_named"),
+        springs_without_a_name_are_rigid=("more = len(problem.free) - len(found.x)\n", "return found\n"),
+    ),
+    *of(
+        "explain/absolute/balancer.py", *tests("absolute", "balancer"),
+        any_wave_is_a_balancer=("_wave(effect, final) < NO_GEAR", "_wave(effect, final) < 0.0"),
+    ),
+    *of(
         "explain/absolute/choose.py", *POSITIONS,
         confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > SURE and", "gained.share > SHARE and"),
         looking_at_many_for_nothing=("CLEAR + float(np.log(max(len(linear.candidates), 1)))", "CLEAR"),
@@ -122,12 +136,15 @@ OF_POSITIONS: tuple[Fault, ...] = (
         a_marker_always_where_it_was=("ways += [(\"series\",), (\"station\", \"series\")]", "ways += []"),
     ),
     *of(
+        "identify/absolute/beside_frames.py", *tests("absolute", "hanging"),
+        waves_taken_for_sag=("for kinds in ((JointFrame, TransmissionError), (JointSprings,))", "for kinds in ((JointFrame,), (JointSprings,))"),
+    ),
+    *of(
         "identify/absolute/hanging.py", *tests("absolute", "hanging"),
         a_balancer_taken_for_a_ceiling=("if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):", "if odds < BEYOND_DOUBT:"),
         springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
-        gravity_along_one_axis_alone=("ways = [size * axis for axis in (*np.eye(3), np.zeros(3))]", "ways = [size * axis for axis in (*(np.eye(3)[[2, 2, 2]]), np.zeros(3))]"),
-        a_load_taken_for_weight=("by_axis = along[:3] - along[3]", "by_axis = along[:3]"),
-        waves_taken_for_sag=("for kinds in ((JointFrame, TransmissionError), (JointSprings,))", "for kinds in ((JointFrame,), (JointSprings,))"),
+        gravity_along_one_axis_alone=("[under(way) for way in (*np.eye(3), np.zeros(3))]", "[under(way) for way in (*np.eye(3)[[2, 2, 2]], np.zeros(3))]"),
+        a_load_taken_for_weight=("by_axis = sag.along[:3] - sag.along[3]", "by_axis = sag.along[:3] + 0.0"),
         what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
     ),
     *of(

@@ -18,9 +18,36 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/select/outliers.py", *tests("explain", "outliers"),
+        what_came_twice_slipped=("unit[borne_out] = 0.0", "unit[borne_out] *= 1.0"),
         a_second_outlier_beside_the_first_shift=("left[each.readings] -= (each", "left[each.readings] -= 0.0 * (each"),
         a_shift_that_takes_nothing_of_the_readings=("residual = residual - new.T @ (new @ y)", "residual = residual + 0.0"),
         a_shift_counted_with_what_the_fit_has=("free = -(self.first.T @ near)", "free = (self.first.T @ near)"),
+    ),
+    *of(
+        "explain/select/stepwise.py", *tests("explain", "outliers"),
+        nothing_stands_apart_of_a_model=("    if not len(outliers):\n", "    if False:\n"),
+    ),
+    *of(
+        "measurements/branches.py", *tests("measurements", "branches"),
+        a_foot_that_belongs_to_the_fall=("starts.append(row - 1 if again else row)", "starts.append(row)"),
+    ),
+    *of(
+        "effects/gear/friction.py", *tests("effects", "curves"),
+        a_cycle_that_left_nothing=("-reach * way[k], held)", "0.0 * way[k], held)"),
+        a_cycle_the_other_way=("-reach * way[k], held)", "reach * way[k], held)"),
+    ),
+    *of(
+        "effects/gear/hardening.py", *tests("effects", "laws"),
+        softer_the_other_way=("np.minimum(torque, 0.0)[..., None]", "np.maximum(torque, 0.0)[..., None]"),
+    ),
+    *of(
+        "data_checks/stuck.py", *tests("data_checks", "stuck"),
+        a_coarse_gauge_is_stuck=("usual = max(float(beside), by_chance,", "usual = max(0.0, 0.0,"),
+        one_end_of_a_range_alone=("np.abs(np.abs(values) - end)", "np.abs(values - end)"),
+    ),
+    *of(
+        "workspace/compensate.py", *tests("workspace", "compensate"),
+        weight_that_turns_no_gear=("point=point, absolute=True)", "point=point)"),
     ),
     *of(
         "explain/judge/selection_uncertainty.py", *tests("explain", "selection_uncertainty"),
@@ -246,7 +273,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/select/outliers.py", *tests("explain", "outliers"),
-        slips_hide_each_other=("last = max((k + 1 for k, state in enumerate(states) if state.next > ALONE), default=0)", "last = next((k for k, s in enumerate(states) if s.next <= ALONE), 0)"),
+        slips_hide_each_other=("last = max((k for k, far in enumerate(out, start=1) if far > ALONE), default=0)", "last = next((k for k, s in enumerate(states) if s.next <= ALONE), 0)"),
         crowd_that_does_not_stand_apart=("if last < len(states) and states[last].next <= LIMIT:", "if last < len(states):"),
     ),
     *of(

@@ -37,7 +37,7 @@ class FrictionHysteresis(GearEffect, Switching):
         p_k(t) = min(max(p_k(t − 1) + τ(t) − τ(t − 1), −r_k), r_k),   p_k(0) = 0
 
     An arm that was loaded and unloaded before its zero was read, as laboratories do until the loop
-    closes, begins where that left it: p_k = −min(r_k, |τ|/2) sign(τ), τ the largest of the ladder.
+    closes, begins where that left it: p_k(0) = −r_k sign(τ), with τ the loads of the ladder.
 
     Attributes:
         reaches: Torques r_k [N·m] after which it slips; 0: at once, on the branch that the readings
@@ -145,7 +145,7 @@ def held_back(
     change = np.diff(torques, axis=0, prepend=0.0)
     fresh = np.zeros(steps.shape, dtype=bool)  # the first load of a series, where it falls already
     fresh[1:] = idle[:-1] & ~idle[1:] & (load_cases.branch < 0.0)[steps[1:]]
-    onset = 0.5 * _largest_of_run(torques, idle) if cycled else None
+    way = _sign_of_run(torques, idle) if cycled else None
     reach = reaches[:, None]
     held = np.zeros((len(reaches), steps.shape[1]))
     seen = np.zeros((len(steps), *held.shape))
@@ -153,20 +153,19 @@ def held_back(
         held = np.minimum(np.maximum(held + change[k], -reach), reach)
         if fresh[k].any():
             held = np.where(fresh[k], -reach * np.sign(torques[k]), held)
-        if onset is not None and idle[k].any():
-            closed = -np.minimum(np.maximum(onset[k], -reach), reach)
-            held = np.where(idle[k], closed, held)
+        if way is not None and idle[k].any():
+            held = np.where(idle[k], -reach * way[k], held)
         seen[k] = held
     pose = load_cases.pose_column
     return np.asarray((seen[own, :, pose] - seen[zero, :, pose]).T)
 
 
-def _largest_of_run(torques: Array, idle: Mask) -> Array:
-    """(S, g) at every idle step the largest torque until the next one, with its sign."""
-    largest, peak = np.zeros(torques.shape), np.zeros(torques.shape[1])
+def _sign_of_run(torques: Array, idle: Mask) -> Array:
+    """(S, g) at every idle step the sign of the largest torque until the next one."""
+    sign, peak = np.zeros(torques.shape), np.zeros(torques.shape[1])
     for k in range(len(torques) - 1, -1, -1):
         peak = np.where(np.abs(torques[k]) > np.abs(peak), torques[k], peak)
         if idle[k].any():
-            largest[k] = np.where(idle[k], peak, 0.0)
+            sign[k] = np.where(idle[k], np.sign(peak), 0.0)
             peak = np.where(idle[k], 0.0, peak)
-    return largest
+    return sign
