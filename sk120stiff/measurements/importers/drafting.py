@@ -360,7 +360,7 @@ def _labels(
         return stated.cells, stated, []
     pose, said = rows_of_one_pose(q), "Rows with the same joint values are one pose."
     if len(set(pose)) == len(pose) and np.ptp(W, axis=0).any() and not displaced:
-        pose = _clusters(q)
+        pose = near_poses(q)
         said = f"Rows whose joint values differ by less than {SAME_POSE:g} are one pose."
     names = sheet.get("name")
     own = names.cells if names else ()
@@ -370,7 +370,8 @@ def _labels(
     return pose, None, [said]
 
 
-def _clusters(q: Array) -> tuple[str, ...]:
+def near_poses(q: Array) -> tuple[str, ...]:
+    """Labels of N rows: those whose joint values differ by no more than `SAME_POSE` have one."""
     firsts: list[int] = []
     labels = []
     for row in range(len(q)):
