@@ -23,6 +23,7 @@ LEAST = 5  # rows of a hold; the running median keeps plateaus that long
 SAME = 3.0  # σ between running medians: of nine rows each, they scatter by 0.6 σ
 ODD = 6.0  # σ off the median of its hold: such a row is of another load
 WITHIN = (0.95, 1.96)  # of normal errors this share lies within so many σ
+NORMAL = 1.4826  # standard deviation of normal errors over the median of their sizes
 SMALL = 0.03  # of how loads differ from hold to hold: noise, and no loads one by one
 EVEN = 5.0  # times the noise along another axis: one sensor is about as noisy along each
 
@@ -51,6 +52,18 @@ class Holds:
             if part.any()
         ]
         return " and ".join(parts)
+
+
+def scatter_um(draft: Draft, holds: Holds) -> float:
+    """By how much readings of a hold scatter per axis [µm], as the middle of them tells it: a late
+    tracker moves on while the arm stands already."""
+    apart = [
+        values - np.median(values)
+        for rows in holds.rows
+        for column in draft.measured[rows].T
+        if len(values := column[np.isfinite(column)])
+    ]
+    return 1e6 * NORMAL * float(np.median(np.abs(np.concatenate(apart))))
 
 
 def holds_of(joints: Array, wrench: Array) -> Holds:
@@ -153,6 +166,7 @@ def as_repeats(draft: Draft) -> Sheet | None:
     if np.linalg.norm(noise) > SMALL * np.linalg.norm(np.std(levels, axis=0)):
         return None
     typical = int(np.median([len(rows) for rows in holds.rows]))
+    scatter = scatter_um(draft, holds)
     alone = ""
     if len(holds.changing):
         alone = f"; {len(holds.changing)} rows under loads that did not last keep theirs"
@@ -163,6 +177,8 @@ def as_repeats(draft: Draft) -> Sheet | None:
             *sheet.notes,
             f"In {len(holds.rows)} holds, of {typical} rows in the median, the arm stood under one "
             f"load, which was read with a noise of {holds.say()}. All rows of a hold have its mean "
-            f"as their load: they are repeats, and tell the noise{alone}.",
+            f"as their load: they are repeats of one pose and load{alone}. They scatter by "
+            f"{scatter:.3g} µm per axis. If the instrument is no noisier over hours, state that: "
+            f"noise: {{sigma: {scatter:.3g}, unit: um}} in the YAML file.",
         ),
     )

@@ -8,11 +8,17 @@ import numpy as np
 
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.drafting import Draft, near_poses
-from sk120stiff.measurements.importers.holds import LEAST, STILL, Holds, holds_of, mean_loads
+from sk120stiff.measurements.importers.holds import (
+    LEAST,
+    STILL,
+    Holds,
+    holds_of,
+    mean_loads,
+    scatter_um,
+)
 
 STANDSTILLS = 3  # of a log
 MOVING = 10  # rows of a log in which the arm moves
-NORMAL = 1.4826  # standard deviation of normal errors over the median of their sizes
 SHORT = 0.2  # of the way from standstill to standstill: a step from row to row on it
 
 
@@ -53,10 +59,6 @@ def _of_standstills(draft: Draft, holds: Holds) -> Sheet:
         cells = tuple(f"{np.median(values[run]):.12g}" for run in still)
         return replace(column, cells=cells)
 
-    apart = np.concatenate(
-        [draft.measured[run] - np.median(draft.measured[run], axis=0) for run in still]
-    )
-    scatter = 1e6 * NORMAL * float(np.median(np.abs(apart)))  # a late tracker still moves at first
     typical = int(np.median([len(run) for run in still]))
     left = f"{len(holds.moving)} rows in which it moved"
     if len(holds.changing):
@@ -64,7 +66,7 @@ def _of_standstills(draft: Draft, holds: Holds) -> Sheet:
     notes = [
         f"This is a log: in {len(still)} standstills, of {typical} rows in the median, the arm "
         f"stood under one load. Each is one reading, the median of its rows (which scatter by "
-        f"{scatter:.3g} µm per axis); {left} are left out."
+        f"{scatter_um(draft, holds):.3g} µm per axis); {left} are left out."
     ]
     if holds.noise.any():
         notes.append(

@@ -116,6 +116,8 @@ def test_rows_of_a_hold_are_repeats_under_its_mean_load(tmp_path: Path) -> None:
     assert len(set(found.draft.pose)) == 9
     told = next(note for note in found.said if "27 holds" in note)
     assert "of 15 rows" in told and "0.22 N" in told and "repeats" in told
+    scatter = float(told.partition("sigma: ")[2].partition(",")[0])
+    assert 27.0 < scatter < 33.0
 
 
 def test_loads_that_differ_from_row_to_row_stay_as_they_are(tmp_path: Path) -> None:
