@@ -20,7 +20,7 @@ from sk120stiff.measurements.poses import rows_at_rest
 
 STILL = 2e-4  # rad or m: what encoders of an arm that stands may wander by
 LEAST = 5  # rows of a hold; the running median keeps plateaus that long
-SAME = 3.0  # σ between running medians: of nine rows each, they scatter by 0.6 σ
+SAME = 5.0  # σ between running medians: at two edges of a short plateau they are its extremes
 ODD = 6.0  # σ off the median of its hold: such a row is of another load
 WITHIN = (0.95, 1.96)  # of normal errors this share lies within so many σ
 NORMAL = 1.4826  # standard deviation of normal errors over the median of their sizes
@@ -56,14 +56,14 @@ class Holds:
 
 def scatter_um(draft: Draft, holds: Holds) -> float:
     """By how much readings of a hold scatter per axis [µm], as the middle of them tells it: a late
-    tracker moves on while the arm stands already."""
+    tracker moves on while the arm stands already. NaN of gauges, which have axes of their own."""
     apart = [
         values - np.median(values)
         for rows in holds.rows
         for column in draft.measured[rows].T
         if len(values := column[np.isfinite(column)])
     ]
-    return 1e6 * NORMAL * float(np.median(np.abs(np.concatenate(apart))))
+    return 1e6 * NORMAL * float(np.median(np.abs(np.concatenate(apart)))) if apart else np.nan
 
 
 def holds_of(joints: Array, wrench: Array) -> Holds:
@@ -167,6 +167,11 @@ def as_repeats(draft: Draft) -> Sheet | None:
         return None
     typical = int(np.median([len(rows) for rows in holds.rows]))
     scatter = scatter_um(draft, holds)
+    told = (
+        f" They scatter by {scatter:.3g} µm per axis. If the instrument is no noisier over hours, "
+        f"state that: noise: {{sigma: {scatter:.3g}, unit: um}} in the YAML file."
+    )
+    told = told if np.isfinite(scatter) else ""
     alone = ""
     if len(holds.changing):
         alone = f"; {len(holds.changing)} rows under loads that did not last keep theirs"
@@ -177,8 +182,6 @@ def as_repeats(draft: Draft) -> Sheet | None:
             *sheet.notes,
             f"In {len(holds.rows)} holds, of {typical} rows in the median, the arm stood under one "
             f"load, which was read with a noise of {holds.say()}. All rows of a hold have its mean "
-            f"as their load: they are repeats of one pose and load{alone}. They scatter by "
-            f"{scatter:.3g} µm per axis. If the instrument is no noisier over hours, state that: "
-            f"noise: {{sigma: {scatter:.3g}, unit: um}} in the YAML file.",
+            f"as their load: they are repeats of one pose and load{alone}.{told}",
         ),
     )

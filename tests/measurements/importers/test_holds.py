@@ -128,3 +128,17 @@ def test_loads_that_differ_from_row_to_row_stay_as_they_are(tmp_path: Path) -> N
     found = brought(tmp_path, q, x + PULL * TURN.apply(F), F)
     assert np.allclose(found.draft.loads.wrench[:, :3], F, atol=1e-3)
     assert not any("holds" in note for note in found.said)
+
+
+def test_gauges_under_a_noisy_sensor_have_its_mean_too(tmp_path: Path) -> None:
+    """Each along a direction of its own: how they scatter per axis is not told."""
+    q, _, F = held(np.random.default_rng(14).normal(0.0, 40.0, (9, 3, 3)), 6)
+    head = ",".join(f"q{k}" for k in range(1, 7)) + ",d[mm],ux,uy,uz,fx[N],fy[N],fz[N]"
+    along = np.tile([0.1, 0.0, 0.0, 1.0], (len(q), 1))
+    path = tmp_path / "gauges.csv"
+    np.savetxt(path, np.column_stack([q, along, noisy(F)]), delimiter=",", header=head,
+               comments="", fmt="%.6f")  # fmt: skip
+    found = import_readings(path, load_robot(ur5(), tool="tool0"), Told(angle="rad"))
+    assert len({tuple(row) for row in found.draft.loads.wrench}) == 27
+    told = next(note for note in found.said if "27 holds" in note)
+    assert "scatter" not in told
