@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import two_digits
 from sk120stiff.exports.contract import Exported, Format, Request
 from sk120stiff.exports.dh import (
@@ -31,6 +31,10 @@ from sk120stiff.robot.anatomy import arm_length
 ANGLES = (0, 4, 5)  # of `COLUMNS`; the others are lengths
 UNITS = tuple("deg" if k in ANGLES else "mm" for k in range(len(COLUMNS)))
 PUBLIC = np.array([np.degrees(1.0) if k in ANGLES else 1e3 for k in range(len(COLUMNS))])
+FIXED = {  # by the form of a row: columns that are zero in every arm (see `dh.rows_of`)
+    "base": [0], "DH": [3, 5], "Hayati": [1, 3], "coincident": [0, 1],
+    "last": [0, 2, 3, 4, 5], "tool": [1], "measured": [0, 4, 5],
+}  # fmt: skip
 _STEP = 1e-6  # rad or m, of the derivatives
 _NOTHING = 1e-14  # rad or m, what products of rotations leave of zero
 _ROUNDING = 1e-8  # of a derivative that is none
@@ -43,8 +47,8 @@ class Table:
     Attributes:
         names, drivers, factors: (r,) joint, and what moves it: its value is factor · driver.
         moves: (r,) the column that the value adds to, theta or d; empty where nothing moves.
-        std: (r, 6) NaN: not known; infinite: the readings do not show it. None: the model stores
-            no uncertainty.
+        std: (r, 6) NaN: not known, as where nobody estimated it; infinite: the readings do not show
+            it. None: the model stores no uncertainty.
     """
 
     names: tuple[str, ...]
@@ -66,7 +70,10 @@ class Table:
         def moved(rows: Array) -> Array:
             return np.concatenate([standard_to_modified(rows[body]), rows[body.stop :]])
 
-        return forms, moved(self.values), None if self.std is None else moved(self.std)
+        std = None if self.std is None else moved(self.std)
+        if std is not None and np.isnan(std[1, :2]).all():
+            std[1, 2:] = np.nan  # zero by the form of a row of which nothing was estimated
+        return forms, moved(self.values), std
 
 
 def table_of(model: Model, geometry: Geometry) -> Table:
@@ -102,6 +109,7 @@ def table_of(model: Model, geometry: Geometry) -> Table:
         floor = np.full(len(COLUMNS), model.uncertainty.floor)
         floor[list(ANGLES)] /= arm_length(robot)
         std = spread(by_parameter @ L, by_parameter @ B, floor)
+        std = np.where(_estimated(by_parameter, model, layout), std, np.nan)
         for free in (0, len(geometry.joints) + 1):
             if locked(values[free]):
                 std[free, [0, 5]] = np.nan
@@ -116,6 +124,19 @@ def table_of(model: Model, geometry: Geometry) -> Table:
         None if std is None else std[:shown],
         layout,
     )
+
+
+def _estimated(by_parameter: Array, model: Model, layout: Layout) -> Mask:
+    """(r, 6) does a number go with a parameter that was estimated, or is it zero by the form of a
+    row that has such numbers? Of all others nothing is known."""
+    asked = set() if model.uncertainty is None else set(model.uncertainty.names)
+    columns = [k for k, name in enumerate(model.names) if name in asked]
+    found: Mask = (by_parameter[..., columns] != 0.0).any(axis=-1)
+    forms = [FIXED.get(form, []) for form in layout.forms]
+    fixed = [FIXED["base"], *forms, FIXED["last"], FIXED["tool"], FIXED["measured"]]
+    for row, zeros in enumerate(fixed):
+        found[row, zeros] |= found[row].any()
+    return found
 
 
 def _coupling(robot: Robot) -> tuple[Array, tuple[str, ...], tuple[float, ...]]:
@@ -227,8 +248,8 @@ def _notes(model: Model, pairs: list[tuple[str, str, float]]) -> tuple[str, ...]
         notes.append("The model stores no uncertainty, so the numbers have no standard errors.")
     else:
         notes.append(
-            "A missing standard error: the readings do not show the number, or show it only "
-            "together with others."
+            "A missing standard error: the number was not estimated, or the readings do not show "
+            "it, or show it only together with others."
         )
     if not isinstance(model.robot.coupling, LinearCoupling):
         notes.append("Closed loops move joints of this table: their values are not in it.")

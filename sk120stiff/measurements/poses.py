@@ -36,18 +36,18 @@ def labels_to_come(known: Sequence[str], count: int) -> tuple[str, ...]:
     return tuple(f"{NEXT}{last + 1 + k}" for k in range(count))
 
 
-def rows_at_rest(joints: Array, within: float, alike: Array | None = None) -> list[Index]:
-    """Rows in turn at which the joints (N, n) stay within so much of the first of them.
+def rows_at_rest(values: Array, within: float | Array) -> list[Index]:
+    """Rows in turn at which joints, or loads, (N, n) stay within so much of the first of them.
 
-    `alike` (N, k), such as loads: what besides must not change among them.
+    Args:
+        values: (N, n) in SI.
+        within: Difference that is none, of all columns or of each (n,).
     """
     starts = [0]
-    for k in range(1, len(joints)):
-        first = starts[-1]
-        moved = np.abs(joints[k] - joints[first]).max() > within
-        if moved or (alike is not None and (alike[k] != alike[first]).any()):
+    for k in range(1, len(values)):
+        if (np.abs(values[k] - values[starts[-1]]) > within).any():
             starts.append(k)
-    return np.split(np.arange(len(joints)), starts[1:])
+    return np.split(np.arange(len(values)), starts[1:])
 
 
 def refuse_differing_joints(

@@ -63,3 +63,16 @@ def test_the_gap_is_told_along_the_gauge(run: Run, gauged: str, tmp_path: Path) 
         assert row["gap_d[um]"] == pytest.approx(gap, abs=1e-9)
     assert found.document["rms_um"] == pytest.approx(5.0, rel=0.4)
     assert "Gap over 42 readings of gauges" in run("predict", model, gauged).stdout
+
+
+@pytest.mark.parametrize(("words", "told"), [(("load", "unload"), True), (("load", "load"), False)])
+def test_a_branch_that_is_not_used_is_told(
+    run: Run, gauged: str, words: tuple[str, str], told: bool
+) -> None:
+    """Friction is sought of displacements alone, whatever the column promises."""
+    head, *rows = Path(gauged).read_text("utf-8").splitlines()
+    lines = [f"{head},branch", *(f"{row},{words[k % 2]}" for k, row in enumerate(rows))]
+    Path(gauged).write_text("\n".join(lines) + "\n", "utf-8")
+    found = run("identify", gauged)
+    assert found.code == 0, found.stderr
+    assert ("Friction is not sought of such readings" in " ".join(found.stdout.split())) == told

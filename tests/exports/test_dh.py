@@ -122,7 +122,10 @@ def test_standard_errors_are_those_of_the_parameters(convention: str) -> None:
         squares = squares + (0.5 * (up - down)) ** 2
     found = np.array([numbers(row, "std_") for row in rows_of(made, convention)])
     assert (np.sqrt(squares) > 1e-6).sum() > 25
-    np.testing.assert_allclose(found, np.sqrt(squares), rtol=2e-3, atol=1e-11)
+    asked = np.ones(found.shape, bool)
+    asked[-2, 2:] = False  # where the flange sits behind the last joint nobody estimated
+    assert (np.isfinite(found) == asked).all() and squares[~asked].max() < 1e-30
+    np.testing.assert_allclose(found[asked], np.sqrt(squares)[asked], rtol=2e-3, atol=1e-11)
     assert made.details["coverage_factor_95"] == pytest.approx(2.086, abs=1e-3)
 
 
@@ -136,6 +139,22 @@ def test_what_the_readings_do_not_show_has_no_standard_error() -> None:
     assert table["shoulder_pan_joint"]["std_theta[deg]"] == ""
     assert float(table["elbow_joint"]["std_theta[deg]"]) == 0.0
     assert any("do not show" in note for note in made.notes)
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+def test_what_nobody_estimated_has_no_standard_error(convention: str) -> None:
+    """Of the zero of one joint alone: nothing is known of other numbers."""
+    model = with_random(base_model(public("ur5_robot.urdf")), "joint_offset:elbow_joint")
+    P = len(model.values)
+    known_well = 1e-5 * np.eye(P)[[model.names.index("joint_offset:elbow_joint.offset")]]
+    made = exported(known(model, known_well, np.zeros((0, P))), "dh")
+    table = {row["joint"]: numbers(row, "std_") for row in rows_of(made, convention)}
+    elbow = table.pop("elbow_joint")
+    assert elbow[0] == pytest.approx(1e-5)
+    assert np.isnan(elbow[[2, 4, 5]]).all(), "nobody asked for lengths and tilts"
+    for joint in ("base", "shoulder_pan_joint", "wrist_2_joint", "wrist_3_joint", "tool"):
+        assert np.isnan(table[joint]).all(), joint
+    assert any("was not estimated" in note for note in made.notes)
 
 
 @pytest.mark.parametrize("convention", ["standard", "modified"])

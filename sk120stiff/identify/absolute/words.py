@@ -104,12 +104,25 @@ def unseen(found: Calibration) -> dict[str, str]:
     }
 
 
+def _branches(readings: Measurements) -> list[str]:
+    """What is not sought, though a column may suggest it."""
+    if not {"load", "unload"} <= set(readings.branch or ()):
+        return []
+    return [
+        "Friction is not sought of such readings, though the column branch tells loads that rise "
+        "from loads that fall: it keeps both from counting as repeats, and is not used otherwise. "
+        "What friction does stays in what is left. It is sought of displacements of one point "
+        "without turns: columns dx, dy, dz, with blank cells where an axis was not read."
+    ]
+
+
 def findings(found: Calibration, readings: Measurements) -> list[str]:
     """Everything beside the numbers, in sentences."""
     said = list(found.notes)
     if found.placed is not None:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))
+    said += _branches(readings)
     said += _hung(found, readings) + _payload(found, readings) + _implausible(found)
     if found.waves:
         said.append(

@@ -26,10 +26,11 @@ from sk120stiff.measurements.importers.told import (
     texts,
     unit_of,
 )
+from sk120stiff.measurements.importers.unread_axes import displacements
 from sk120stiff.measurements.rows import rows_of_one_pose
 
 Written = tuple[tuple[str, tuple[str, ...]], ...]
-POSITIONS, DISPLACEMENTS, SIGMAS = ("x", "y", "z"), ("dx", "dy", "dz"), ("sx", "sy", "sz")
+POSITIONS, SIGMAS = ("x", "y", "z"), ("sx", "sy", "sz")
 
 
 LABELS = ("order", "marker", "series", "station", "branch", "repeat")  # taken over as they stand
@@ -123,8 +124,8 @@ def drafted(
     markers, places = _markers(sheet, told)
     taken += [c for c in sheet.columns if c.meaning.startswith("tcp ")]
     use = _use(sheet)
-    pose, label, notes = _labels(sheet, joints.values, loads.wrench, displaced=back is None and
-                                 sheet.has(*DISPLACEMENTS))  # fmt: skip
+    displaced = readings[0][0].startswith("d")
+    pose, label, notes = _labels(sheet, joints.values, loads.wrench, displaced=displaced)
     said += notes
     names = sheet.get("name")
     if names is not None:
@@ -142,7 +143,7 @@ def drafted(
         joints=joints,
         loads=loads,
         measured=measured,
-        displaced=readings[0][0].startswith("d"),
+        displaced=displaced,
         readings=readings,
         other=tuple(other),
         markers=(markers, places),
@@ -171,15 +172,17 @@ def _measured(
 ) -> tuple[Array, Written, list[Column], Array | None, list[str]]:
     """(N, 3) positions or displacements [m], as they are written, and the columns they are from."""
     nominal = [c for axis in POSITIONS if (c := sheet.get(f"nominal {axis}"))]
-    for names in (POSITIONS, DISPLACEMENTS):
-        if sheet.has(*names) and not (nominal and names == DISPLACEMENTS):
-            columns = [c for name in names if (c := sheet.get(name))]
-            units = [unit_of(sheet, c, "length", told) for c in columns]
-            values = [quantity(sheet, c, "length", u) for c, u in zip(columns, units, strict=True)]
-            written = tuple(
-                (f"{name}[{u}]", texts(c)) for name, u, c in zip(names, units, columns, strict=True)
-            )
-            return np.column_stack(values), written, columns, None, []
+    if sheet.has(*POSITIONS):
+        columns = [c for name in POSITIONS if (c := sheet.get(name))]
+        units = [unit_of(sheet, c, "length", told) for c in columns]
+        values = [quantity(sheet, c, "length", u) for c, u in zip(columns, units, strict=True)]
+        written = tuple(
+            (f"{name}[{u}]", texts(c)) for name, u, c in zip(POSITIONS, units, columns, strict=True)
+        )
+        return np.column_stack(values), written, columns, None, []
+    moved = None if nominal else displacements(sheet, told)
+    if moved is not None:
+        return moved[0], moved[1], moved[2], None, moved[3]
     deviation = [c for a in POSITIONS if (c := sheet.get(f"deviation {a}") or sheet.get(f"d{a}"))]
     if len(nominal) == len(deviation) == 3:
         return _summed(sheet, told, nominal, deviation)
@@ -360,7 +363,7 @@ def _labels(
         return stated.cells, stated, []
     pose, said = rows_of_one_pose(q), "Rows with the same joint values are one pose."
     if len(set(pose)) == len(pose) and np.ptp(W, axis=0).any() and not displaced:
-        pose = _clusters(q)
+        pose = near_poses(q)
         said = f"Rows whose joint values differ by less than {SAME_POSE:g} are one pose."
     names = sheet.get("name")
     own = names.cells if names else ()
@@ -370,7 +373,8 @@ def _labels(
     return pose, None, [said]
 
 
-def _clusters(q: Array) -> tuple[str, ...]:
+def near_poses(q: Array) -> tuple[str, ...]:
+    """Labels of N rows: those whose joint values differ by no more than `SAME_POSE` have one."""
     firsts: list[int] = []
     labels = []
     for row in range(len(q)):

@@ -14,10 +14,21 @@ from sk120stiff.measurements.importers.gauge_units import counted_unit, multipli
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.masses import with_masses
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
+from sk120stiff.measurements.importers.unread_axes import (
+    AXES,
+    BLANK,
+    GAUGE,
+    axes_among,
+    say_unread,
+    with_gauges,
+    without_blanks,
+)
 from sk120stiff.measurements.importers.vendor_joints import with_vendor_joints
 from sk120stiff.measurements.importers.words import (
     UNITS_IN_WORDS,
+    as_measured,
     file_units,
+    is_needed,
     is_unit,
     kind_of,
     meaning_of,
@@ -31,8 +42,8 @@ NEEDED = {
         POSITION,
         ("measured x", "measured y", "measured z"),
         ("nominal x", "nominal y", "nominal z"),
-        ("dx", "dy", "dz"),
         ("loaded x", "loaded y", "loaded z"),
+        *((axis,) for axis in (*AXES, GAUGE)),
     ),
     "joints": (("joint 1",), ("joint 0",)),
     "loads": tuple(
@@ -41,7 +52,6 @@ NEEDED = {
 }
 SEARCHED = 80  # rows that may stand above the headers
 LISTED = 12  # comments and lines above the table that are shown one by one
-BLANK = {"", "nan", "n/a", "na", "-", "--", "---", "none", "null", "#n/a"}
 _UNIT_WORDS = ("unit", "units", "einheit", "einheiten", "unité", "unités", "unidad", "unità")
 ABOVE = "the lines above the table"
 _FRAME = re.compile(r"(?:working )?frame\W+(?!rate)(.+)", re.IGNORECASE)
@@ -125,6 +135,7 @@ def _numeric(row: tuple[str, ...]) -> bool:
 def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> bool:
     named = [unit_of_header(cell) for cell in row if not is_number(cell)]
     known = [meaning(name, source.actuated) for name, _ in named]
+    known = with_gauges([name for name, _ in named], known)
     known, _ = with_masses([name for name, _ in named], known, [unit for _, unit in named])
     known = with_vendor_joints([name for name, _ in named], known, source.actuated)
     found = {each[0] for each in with_torques(known, [unit for _, unit in named]) if each}
@@ -158,10 +169,11 @@ def _laid_out(
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
     known = [meaning(name, source.actuated) if name else None for name, _ in named]
+    known = with_gauges([name for name, _ in named], known)
     known, units = with_masses([name for name, _ in named], known, units)
     known = with_torques(known, units)
     known = with_vendor_joints([name for name, _ in named], known, source.actuated)
-    meanings = _measured(with_quaternions([name for name, _ in named], known))
+    meanings = as_measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):
         kind = kind_of(each[0]) if each else None
@@ -170,18 +182,6 @@ def _laid_out(
     return Layout(
         headers, meanings, tuple(units), tuple(places), first, tuple(above), tuple(strange)
     )
-
-
-def _measured(
-    meanings: list[tuple[str, float] | None],
-) -> tuple[tuple[str, float] | None, ...]:
-    """What is called measured is the position; what stands plainly beside it was nominal."""
-    words = [known[0] if known else "" for known in meanings]
-    if {f"measured {axis}" for axis in POSITION} <= set(words):
-        other = {axis: f"nominal {axis}" for axis in POSITION}
-        other |= {f"measured {axis}": axis for axis in POSITION}
-        return tuple((other.get(k[0], k[0]), k[1]) if k else None for k in meanings)
-    return tuple(meanings)
 
 
 def _unit_in(cell: str) -> str:
@@ -264,7 +264,8 @@ def sheet_of(
     rank: list[int] = []
     skipped: list[tuple[int, str]] = []
     total = 0
-    needed = [k for k, m in enumerate(layout.meanings) if m and _is_needed(m[0])]
+    needed = [k for k, m in enumerate(layout.meanings) if m and is_needed(m[0])]
+    axes = axes_among(layout.meanings)
     for k in range(layout.first, len(grid.rows)):
         row = _cut(grid.rows[k], width)
         named = len(row) == width and row[0]  # a point that was not measured
@@ -281,7 +282,9 @@ def sheet_of(
             )
         row = (*row, *[""] * (width - len(row)))
         total += 1
-        blank = [layout.headers[c] for c in needed if row[c].lower() in BLANK]
+        row = without_blanks(row, axes)
+        lost = axes if any(row[c] for c in axes) else ()
+        blank = [layout.headers[c] for c in needed if c not in lost and row[c].lower() in BLANK]
         if blank:
             skipped.append((grid.lines[k], f"nothing stands in {', '.join(blank)}"))
             continue
@@ -306,6 +309,7 @@ def sheet_of(
     frame = next(
         (m[1] for _, t in (*grid.comments, *layout.above) if (m := _FRAME.search(t))), None
     )
+    unread = say_unread(layout.headers, rows, axes)
     return Sheet(
         path=source.path,
         title=title,
@@ -318,7 +322,12 @@ def sheet_of(
         total=total,
         spare=tuple(spare),
         frame=frame,
-        notes=(*((f"Read as {grid.how}.",) if grid.how else ()), *notes, *layout.notes),
+        notes=(
+            *((f"Read as {grid.how}.",) if grid.how else ()),
+            *notes,
+            *layout.notes,
+            *[unread][: bool(unread)],
+        ),
     )
 
 
@@ -347,14 +356,6 @@ def sheet_by_order(
             remedy="Leave --format out, or name the columns with --columns.",
         )
     return sheet_of(source, layout, title, why or "as told", assumed_units=units)
-
-
-def _is_needed(meaning: str) -> bool:
-    return meaning.startswith(
-        ("joint ", "nominal ", "deviation ", "tcp ", "loaded ", "unloaded ")
-    ) or meaning in {
-        *POSITION, "dx", "dy", "dz", "fx", "fy", "fz", "mx", "my", "mz", "payload", "load",
-    }  # fmt: skip
 
 
 def _columns(

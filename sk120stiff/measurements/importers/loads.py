@@ -97,7 +97,7 @@ def _refuse_a_force_along_nothing(sheet: Sheet) -> None:
     Raises:
         InputError: Such a column stands beside displacements.
     """
-    for column in sheet.spare if sheet.has("dx", "dy", "dz") else ():
+    for column in sheet.spare if any(map(sheet.get, ("dx", "dy", "dz", "gauge"))) else ():
         if column.unit and units.is_kind(column.unit, "force"):
             raise InputError(
                 f"nothing says along which axis {column.header!r} acts",

@@ -6,13 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Index
 from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.drafting import Draft
-from sk120stiff.measurements.poses import rows_at_rest
+from sk120stiff.measurements.importers.drafting import Draft, near_poses
+from sk120stiff.measurements.importers.holds import (
+    LEAST,
+    STILL,
+    Holds,
+    holds_of,
+    mean_loads,
+    scatter_um,
+)
 
-STILL = 2e-4  # rad or m: what encoders of an arm that stands may wander by
-LEAST = 5  # rows of a standstill
 STANDSTILLS = 3  # of a log
 MOVING = 10  # rows of a log in which the arm moves
 SHORT = 0.2  # of the way from standstill to standstill: a step from row to row on it
@@ -22,52 +26,61 @@ def standstills(draft: Draft) -> Sheet | None:
     """The sheet of a log with a row for each standstill; None where the file is no log.
 
     A log has many rows on the way from one standstill to the next. Poses that were read once among
-    others that were repeated are as far apart as those.
+    others that were repeated are as far apart as those. Loads that were hung one after the other
+    while the arm stood are readings of their own.
     """
     q = draft.joints.values
     if draft.displaced or len(set(draft.marker_of)) > 1 or len(q) < STANDSTILLS * LEAST + MOVING:
         return None
-    runs = rows_at_rest(q, STILL, draft.loads.wrench)
-    still = [run for run in runs if len(run) >= LEAST]
-    moving = np.concatenate([np.zeros(0, int), *(run for run in runs if len(run) < LEAST)])
-    if len(still) < STANDSTILLS or len(moving) < MOVING:
+    holds = holds_of(q, draft.loads.wrench)
+    if len(holds.rows) < STANDSTILLS or len(holds.moving) < MOVING:
         return None
-    ways = np.abs(np.diff([q[run[0]] for run in still], axis=0)).max(axis=1)
-    steps = np.abs(np.diff(q, axis=0)).max(axis=1)[np.minimum(moving, len(q) - 2)]
-    if np.median(steps) > SHORT * np.median(ways):
+    ways = np.abs(np.diff([q[hold[0]] for hold in holds.rows], axis=0)).max(axis=1)
+    ways = ways[ways > STILL]  # of loads at one pose there is none
+    steps = np.abs(np.diff(q, axis=0)).max(axis=1)[np.minimum(holds.moving, len(q) - 2)]
+    if not len(ways) or np.median(steps) > SHORT * np.median(ways):
         return None
-    return _of_standstills(draft, still, len(moving))
+    return _of_standstills(draft, holds)
 
 
-def _of_standstills(draft: Draft, still: list[Index], moving: int) -> Sheet:
-    sheet = draft.sheet
+def _of_standstills(draft: Draft, holds: Holds) -> Sheet:
+    sheet, still = draft.sheet, holds.rows
     middle = [int(run[len(run) // 2]) for run in still]
     medians = {c.meaning for c in sheet.columns if c.meaning in ("x", "y", "z")} | {
         c.meaning for c in draft.joints.taken
     }
+    averaged = mean_loads(still)
 
     def cut(column: Column) -> Column:
         if column.meaning not in medians:
+            column = averaged(column)
             return replace(column, cells=tuple(column.cells[k] for k in middle))
         values = np.array([float(cell) for cell in column.cells])
         cells = tuple(f"{np.median(values[run]):.12g}" for run in still)
         return replace(column, cells=cells)
 
-    apart = np.concatenate(
-        [draft.measured[run] - draft.measured[run].mean(axis=0) for run in still]
-    )
-    scatter = 1e6 * float(np.sqrt(np.mean(apart**2)))
     typical = int(np.median([len(run) for run in still]))
+    left = f"{len(holds.moving)} rows in which it moved"
+    if len(holds.changing):
+        left += f" and {len(holds.changing)} in which the load changed"
+    notes = [
+        f"This is a log: in {len(still)} standstills, of {typical} rows in the median, the arm "
+        f"stood under one load. Each is one reading, the median of its rows (which scatter by "
+        f"{scatter_um(draft, holds):.3g} µm per axis); {left} are left out."
+    ]
+    if holds.noise.any():
+        notes.append(
+            f"Loads are read with a noise of {holds.say()}; that of a standstill is their mean."
+        )
+    columns = tuple(map(cut, sheet.columns))
+    if sheet.get("pose") is None and len({tuple(row) for row in draft.loads.wrench[middle]}) > 1:
+        q = draft.joints.values[middle]
+        columns = (*columns, Column("standstill", "pose", None, "", near_poses(q)))
     return replace(
         sheet,
-        columns=tuple(map(cut, sheet.columns)),
+        columns=columns,
         spare=tuple(map(cut, sheet.spare)),
         lines=tuple(sheet.lines[k] for k in middle),
         rank=tuple(sheet.rank[k] for k in middle) if sheet.rank else (),
-        notes=(
-            *sheet.notes,
-            f"This is a log: in {len(still)} standstills, of {typical} rows in the median, the arm "
-            f"stood. Each is one reading, the median of its rows (which scatter by {scatter:.3g} "
-            f"µm rms per axis); {moving} rows in which it moved are left out.",
-        ),
+        notes=(*sheet.notes, *notes),
     )

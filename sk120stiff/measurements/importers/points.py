@@ -17,6 +17,10 @@ from sk120stiff.measurements.importers.layout import (
 )
 
 _BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
+_HOLDS = (  # what a table is of, by the meanings of its columns
+    ("x, y, z", ("x", "y", "z")), ("dx, dy, dz", ("dx", "dy", "dz")),
+    ("a gauge and its direction", ("gauge",)), ("dx", ("dx",)), ("dy", ("dy",)), ("dz", ("dz",)),
+)  # fmt: skip
 _FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
@@ -72,7 +76,8 @@ class Points:
                 raise InputError("the headers cannot be told", where=str(source.path))
             why = f"no headers; {count} numbers in a row are {', '.join(names)}"
             return sheet_of(source, layout, self.title, why)
-        why = "columns as told" if source.columns else "its headers name x, y, z"
+        holds = next((what for what, words in _HOLDS if layout.has(*words)), "x, y, z")
+        why = "columns as told" if source.columns else f"its headers name {holds}"
         if source.role != "points":
             why = "columns as told" if source.columns else f"its headers name the {source.role}"
         return sheet_of(source, layout, "a table of readings", why)
@@ -91,7 +96,8 @@ def _others(joints: Layout) -> str:
         return ""
     return (
         f" If they stand in this file ({', '.join(left)}), name all columns with --columns: x,y,z "
-        "for positions, dx,dy,dz for displacements, a dash for what is not needed. Distances to "
+        "for positions, dx,dy,dz for displacements, d,ux,uy,uz for what a gauge reads along a "
+        "direction, a dash for what is not needed. Distances to "
         "fixed points need no import: docs/FILES.md shows their file (l[mm],ax[m],ay[m],az[m])."
     )
 

@@ -23,6 +23,7 @@ from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Sou
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
+from sk120stiff.measurements.importers.holds import as_repeats
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
@@ -154,9 +155,9 @@ def import_readings(
     ]  # fmt: skip
     whole = sheets[0] if len(sheets) == 1 else joined(sheets)
     draft = drafted(whole, told, robot.actuated, prismatic)
-    of_log = standstills(draft)
-    if of_log is not None:
-        draft = drafted(of_log, told, robot.actuated, prismatic)
+    held = standstills(draft) or as_repeats(draft)
+    if held is not None:
+        draft = drafted(held, told, robot.actuated, prismatic)
     draft = with_places(draft, told)
     differences, paired_rows, shifted = paired_loads(draft)
     mode: Mode = "positions"

@@ -103,14 +103,17 @@ def plain(unit: str) -> str:
     return {"°": "deg", "µm": "um", "μm": "um"}.get(unit, unit)
 
 
-def numbers(sheet: Sheet, column: Column) -> Array:
-    """(N,) as they stand there, times the factor of the column.
+def numbers(sheet: Sheet, column: Column, *, unread: bool = False) -> Array:
+    """(N,) as they stand there, times the factor of the column; NaN where `unread` cells are empty.
 
     Raises:
         InputError: A cell that is no finite number.
     """
     values = np.zeros(len(column.cells))
     for row, cell in enumerate(column.cells):
+        if unread and not cell:
+            values[row] = np.nan
+            continue
         try:
             values[row] = float(cell)
         except ValueError:
@@ -119,14 +122,18 @@ def numbers(sheet: Sheet, column: Column) -> Array:
             raise InputError(
                 f"{cell!r} is no number",
                 where=sheet.place(column, row),
-                remedy="Write a number, or leave the cell empty: the row is then left out.",
+                remedy="Write a number, or leave the cell empty: "
+                + ("that axis then counts as not read." if unread else "the row is then left out."),
             )
     return values * column.factor
 
 
-def quantity(sheet: Sheet, column: Column, kind: str, unit: str) -> Array:
-    """(N,) in SI."""
-    return units.to_si(numbers(sheet, column), unit, kind, where=sheet.place(column))
+def quantity(sheet: Sheet, column: Column, kind: str, unit: str, *, unread: bool = False) -> Array:
+    """(N,) in SI; NaN where `unread` cells are empty."""
+    values = numbers(sheet, column, unread=unread)
+    read = np.isfinite(values)
+    values[read] = units.to_si(values[read], unit, kind, where=sheet.place(column))
+    return values
 
 
 def texts(column: Column) -> tuple[str, ...]:

@@ -202,4 +202,28 @@ def kind_of(meaning: str) -> str | None:
         return "angle"
     if word in ("fx", "fy", "fz", "payload"):
         return "force"
-    return "length" if word in ("x", "y", "z", "dx", "dy", "dz", "sx", "sy", "sz") else None
+    return (
+        "length" if word in ("x", "y", "z", "dx", "dy", "dz", "sx", "sy", "sz", "gauge") else None
+    )
+
+
+def as_measured(
+    meanings: list[tuple[str, float] | None],
+) -> tuple[tuple[str, float] | None, ...]:
+    """What is called measured is the position; what stands plainly beside it was nominal."""
+    words = [known[0] if known else "" for known in meanings]
+    if {f"measured {axis}" for axis in "xyz"} <= set(words):
+        other = {axis: f"nominal {axis}" for axis in "xyz"}
+        other |= {f"measured {axis}": axis for axis in "xyz"}
+        return tuple((other.get(k[0], k[0]), k[1]) if k else None for k in meanings)
+    return tuple(meanings)
+
+
+def is_needed(meaning: str) -> bool:
+    """Is a row without a number in such a column no reading?"""
+    return meaning.startswith(
+        ("joint ", "nominal ", "deviation ", "tcp ", "loaded ", "unloaded ")
+    ) or meaning in {
+        "x", "y", "z", "dx", "dy", "dz", "gauge", "ux", "uy", "uz",
+        "fx", "fy", "fz", "mx", "my", "mz", "payload", "load",
+    }  # fmt: skip
