@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sk120stiff.explain.findings import likely
+from sk120stiff.identify.absolute.repeated import pure_error
 
 if TYPE_CHECKING:
     from sk120stiff.explain.absolute.explained import Explained
@@ -73,7 +74,16 @@ def next_step_of_positions(answer: Explained) -> str:
         said.append(
             "Trust it no farther than poses like those measured: more is left than the noise makes."
         )
-    if answer.remainder is None:
+    again = pure_error(answer.final)
+    if answer.remainder is None and again is not None:
+        size = f"{1e6 * again.sigma:.3g}"
+        length, angle = f"sigma: {size}, unit: um", f"rotation: {size}, rotation_unit: urad"
+        own = length if unit == "µm" else angle
+        said.append(
+            f"Write 'noise: {{{own}}}' into the YAML file, which the repeats show, so that what is "
+            "left can be told from it."
+        )
+    elif answer.remainder is None:
         said.append(
             "Repeat a few poses, or state the noise, so that what is left can be told from it."
         )

@@ -21,6 +21,7 @@ from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.reading_drift import BRIEF, COURSES
 from sk120stiff.errors import InputError, listed, two_digits
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.absolute.repeated import cells_of_numbers
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements
 
@@ -73,6 +74,7 @@ def refuse_pushed(
         PUSHED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, Viewpoint)],
         SLIPPED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)],
     }
+    pose = cells_of_numbers(problem, problem.measurements.pose_index[:, None])
     told = {PUSHED: problem.said.stations, SLIPPED: problem.said.series}
     tried = {
         cause: _Steps(
@@ -82,6 +84,7 @@ def refuse_pushed(
             found.jacobian[:, columns],
             when[problem.rows],
             a[problem.rows],
+            pose,
         ).found()
         for cause, columns in frames.items()
         if columns and told[cause] is None
@@ -114,8 +117,15 @@ def _when(readings: Measurements) -> Index:
 
 @dataclass(frozen=True, eq=False)
 class _Steps:
-    """Columns (M, P), inverse variances (P,), gap (M,), columns of a place (M, f), times (M,), and
-    joint values (M, n), over which errors of a model are smooth.
+    """What M numbers leave, and when and where they were read.
+
+    Attributes:
+        columns, prior: (M, P) all that may be at work, and inverse variances (P,) of its factors.
+        gap: (M,) what is left.
+        frame: (M, f) columns of a place.
+        when: (M,) times.
+        joints: (M, n) joint values, over which errors of a model are smooth.
+        pose: (M,) pose and axis, of which numbers err together.
     """
 
     columns: Array
@@ -124,6 +134,7 @@ class _Steps:
     frame: Array
     when: Index
     joints: Array
+    pose: Index
 
     def found(self) -> tuple[list[int], float, bool]:
         """Times at which a place changed, in order, the share of the rms gap that they leave, and
@@ -176,11 +187,21 @@ class _Steps:
 
     @cached_property
     def freedom(self) -> float:
-        """Numbers beyond what all that may be at work takes up."""
+        """Independent numbers beyond what all that may be at work takes up.
+
+        Those of one pose that err together count less, by the design effect of their intraclass
+        correlation (Kish 1965).
+        """
         alone = self._beside([])
         inverse = linalg.cho_solve(alone.factor, np.eye(alone.columns.shape[1]))
         taken = float(np.trace(inverse @ (alone.columns.T @ alone.columns)))
-        return len(self.gap) - taken
+        count = np.bincount(self.pose).astype(float)
+        pairs = float((count * (count - 1.0)).sum())
+        together = np.bincount(self.pose, alone.left)
+        square = float(alone.left @ alone.left)
+        alike = (together @ together - square) / max(square / len(self.gap) * pairs, 1e-300)
+        design = 1.0 + float(np.clip(alike, 0.0, 1.0)) * pairs / len(self.gap)
+        return (len(self.gap) - taken) / design
 
     def _beside(self, cuts: list[int], *, creeping: Sequence[Array] = ()) -> _Fitted:
         """All that may be at work and these changes, fitted."""

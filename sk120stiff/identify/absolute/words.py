@@ -13,6 +13,7 @@ from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.gauge import Frozen
 from sk120stiff.identify.absolute.remainder import remainder_at_other_poses
+from sk120stiff.identify.absolute.repeated import pure_error
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.measurements import Measurements
@@ -69,6 +70,13 @@ def gap_sentence(found: Calibration) -> str:
             said += f"what differs between the readings of a pose tells it: {noise}."
         else:
             said += "the gap itself is taken for it."
+            again = pure_error(found)
+            if again is not None:
+                size = f"{1e6 * again.sigma:.3g} {problem.unit}"
+                said += (
+                    f" Repeats of one pose and load tell {size} for one reading ({again.freedom} "
+                    "degrees of freedom): state that, and what is left beyond it is told."
+                )
         if whole:
             return said
         others = [kind for kind in problem.channels.present if kind not in unstated]
