@@ -69,7 +69,7 @@ def with_assumed(
     model: Model, used: Measurements, assumed: Sequence[str], catalogue: Catalogue = CATALOGUE
 ) -> Model:
     """The model with the effects that the user takes for granted, to be fitted with it."""
-    everything = everything_of(model, used, catalogue)
+    everything = _everything(model, used, catalogue)
     load_cases = load_cases_of(model.robot, used)
     for wanted in assumed:
         found = [effect for effect in everything if _matches(effect, wanted)]
@@ -102,7 +102,7 @@ def candidates_for(
     """
     load_cases = load_cases_of(model.robot, used)
     present = {effect.id for effect in model.effects}
-    everything = everything_of(model, used, catalogue)
+    everything = _everything(model, used, catalogue)
     refuse_unknown(everything, options, model, catalogue)
     springs = np.isfinite(model.joint_stiffness())
     soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
@@ -150,7 +150,7 @@ def _matches(effect: Effect, wanted: str) -> bool:
     return wanted in (effect.name, effect.id)
 
 
-def everything_of(model: Model, used: Measurements, catalogue: Catalogue) -> tuple[Effect, ...]:
+def _everything(model: Model, used: Measurements, catalogue: Catalogue) -> tuple[Effect, ...]:
     """Every effect of the catalogue wherever it can act."""
     timed = used.time is not None
     return all_effects(model.robot, poses=used.poses, timed=timed, catalogue=catalogue)

@@ -47,7 +47,10 @@ class GearHardening(GearEffect):
     sided: bool = False
     name: ClassVar[str] = "gear_hardening"
     place: ClassVar[str] = "a joint"
-    equation: ClassVar[str] = "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3"
+    equation: ClassVar[str] = (
+        "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3; by direction: torque / K"
+        " + c * min(torque, 0)"
+    )
     says: ClassVar[str] = "The gear of {where} gets stiffer as its torque grows."
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     also: ClassVar[str] = (

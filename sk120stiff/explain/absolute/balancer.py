@@ -10,17 +10,18 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.effects import Effect
+from sk120stiff.effects.gravity_compensator import GravityCompensator
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import two_digits
 from sk120stiff.identify.absolute.calibrate import Calibration
 
 NO_GEAR = 1e-3  # rad once per turn: ten times what gears of robots are off (an arc minute is 3e-4)
-BALANCER = "gravity_compensator"
 
 
 def balancer_for(effect: Effect, final: Calibration) -> str | None:
     """The balancer at a joint whose waves are none of a gear; None where they may be."""
-    return f"{BALANCER}:{effect.where}" if _torque(effect, final) is not None else None
+    told = _torque(effect, final) is not None
+    return f"{GravityCompensator.name}:{effect.where}" if told else None
 
 
 def balancing(final: Calibration) -> tuple[str, ...]:
@@ -40,8 +41,13 @@ def balancing(final: Calibration) -> tuple[str, ...]:
 
 
 def _torque(effect: Effect, final: Calibration) -> float | None:
-    """Torque that makes the waves of an effect with the spring of its joint [N·m]."""
+    """Torque that makes the waves of an effect with the spring of its joint [N·m].
+
+    None where they are no larger than a gear's, or where no joint is that a balancer lifts.
+    """
     if not isinstance(effect, TransmissionError) or _wave(effect, final) < NO_GEAR:
+        return None
+    if effect.where not in GravityCompensator.places(final.model.robot):
         return None
     springs = dict(zip(final.model.robot.actuated, final.model.joint_stiffness(), strict=True))
     stiffness = float(springs.get(effect.where, np.inf))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.accounts import (
     families_of,
@@ -53,7 +53,6 @@ from sk120stiff.identify.absolute.remainder import (
     chance_of_noise,
     left_beyond_noise,
 )
-from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -88,9 +87,7 @@ def explain_positions(
         prior=options.prior,
     )
     refuse_plan(readings)
-    places = [(kind, where) for kind in catalogue for where in kind.places(model.robot)]
-    told = options_of(readings)
-    every = [kind.at(model.robot, where, told) for kind, where in places]
+    every = all_effects(model.robot, absolute=True, catalogue=catalogue)
     refuse_unknown(every, options, model, catalogue)
     if holdout is not None and (holdout.absolute is None or holdout.is_plan):
         raise InputError(
