@@ -7,7 +7,6 @@ reached once from below and once from above was not repeated: what differs there
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -88,8 +87,9 @@ def repeated(
 def borne_out(measurements: Measurements) -> Mask:
     """(N,) readings that were taken again and came out alike, whatever a model makes of them.
 
-    Alike is what lies no farther apart, along every axis, than `ALIKE` times what repeats usually
-    do; where less than `ENOUGH` distances tell that, nothing is borne out.
+    Each is held against the one before and the one after it of the same pose and load. Alike is
+    what lies no farther apart, along every axis, than `ALIKE` times what repeats usually do; where
+    less than `ENOUGH` distances tell that, nothing is borne out.
 
     Args:
         measurements: Readings with displacements.
@@ -97,11 +97,8 @@ def borne_out(measurements: Measurements) -> Mask:
     out = np.zeros(measurements.n_readings, dtype=bool)
     cell = cells_of(measurements)
     order = np.argsort(cell, kind="stable")
-    groups = np.split(order, np.flatnonzero(np.diff(cell[order])) + 1)
-    pairs = [pair for rows in groups for pair in combinations(rows.tolist(), 2)]
-    if not pairs:
-        return out
-    first, second = np.array(pairs).T
+    again = np.diff(cell[order]) == 0
+    first, second = order[:-1][again], order[1:][again]
     apart = np.abs(measurements.moved[first] - measurements.moved[second])
     apart[~(measurements.read[first] & measurements.read[second])] = np.nan
     told = np.isfinite(apart)
