@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.effects import load_case
+from sk120stiff.effects import effect, load_case
 from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.not_named import beside_not_named
 from sk120stiff.model.predicted import predict_what_holds, unknown_reasons
 from tests.absolute.test_payload_place import hung, robot_of
@@ -51,6 +52,20 @@ def test_what_was_named_keeps_its_value_and_its_errors(tmp_path: Path) -> None:
             assert 0.999 * own.internal_std <= p.internal_std < 1.5 * own.internal_std
     assert wide.rms == found.final.rms
     assert (wide.form, wide.notes) == (found.final.form, found.final.notes)
+
+
+def test_what_stands_fixed_beside_keeps_its_value(tmp_path: Path) -> None:
+    """It was set to zero where it could not be told apart: 1 mm of an axis, a gap 39 times σ."""
+    path = hung(tmp_path, [0.0, 30.0, 60.0])
+    robot, data = robot_of(path), sk.read(path)
+    model = (sk.Model(robot) + effect(robot, "joint_frame", "j4")).with_public(
+        {"joint_frame:j4.z": 1e-3}
+    )
+    found = sk.fit(model, data, fix=["joint_frame:j4.z"])
+    assert isinstance(found, Calibration)
+    wide = beside_not_named(found, [effect(robot, "joint_springs", "j1")])
+    assert wide.model.parameter("joint_frame:j4.z").internal == 1e-3
+    np.testing.assert_array_equal(wide.residual, found.residual)
 
 
 def test_names_that_do_not_exist_are_refused_for_positions_too(tmp_path: Path) -> None:

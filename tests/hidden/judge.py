@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -299,7 +300,9 @@ def coverage(truth: dict[str, Any], answer: Answer, share: float) -> tuple[list[
             continue
         key = f"joint_springs:{joint}.stiffness"
         meant = _meant_by_its_law(truth, answer, joint, stiffness)
-        if key in answer.parameters and meant is not None:
+        found = answer.parameters.get(key)
+        unknown = found is None or (found.std is None and math.isinf(found.value))
+        if not unknown and meant is not None:  # nothing is said of what no reading shows
             springs.append(_inside(answer, key, meant))
     return effects, springs
 

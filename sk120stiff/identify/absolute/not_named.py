@@ -33,7 +33,7 @@ def beside_not_named(found: Calibration, effects: Sequence[Effect]) -> Calibrati
     model = found.model
     for effect in effects:
         model = model + effect
-    of_effects = {each.name for each in model.parameters} - {each.name for each in found.parameters}
+    of_effects = set(model.names) - set(found.model.names)  # what stands fixed there stays
     model = replace(
         model,
         parameters=tuple(
