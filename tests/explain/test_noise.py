@@ -9,8 +9,9 @@ from sk120stiff import Model, base_model, load_robot
 from sk120stiff.explain import Explanation, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
+from sk120stiff.identify.checks.yardstick import scatter
 from sk120stiff.measurements import NoiseStatement
-from sk120stiff.show.stories.verdicts import title_of
+from sk120stiff.show.stories.verdicts import lead_of, title_of
 from tests.explain.readings import SIGMA, answered, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking
 from tests.hidden.generator.causes_joint import FrictionHysteresis, Memory
@@ -25,8 +26,8 @@ def springs() -> Model:
     return model
 
 
-def understated(seed, factor):
-    readings = hidden(seed=seed, poses=10, loads=4)
+def understated(seed, factor, *, poses=10, loads=4):
+    readings = hidden(seed=seed, poses=poses, loads=loads)
     return replace(readings, noise=NoiseStatement(sigma=SIGMA / factor))
 
 
@@ -64,6 +65,21 @@ def test_a_statement_exceeded_eight_times_is_a_finding(springs):
     answer = answered(springs, understated(100, 9.0))
     assert answer.verdict == "outside"
     assert "times the stated uncertainty" in " ".join(answer.noise_reasons)
+
+
+def test_too_few_readings_for_a_scatter_still_tell_noise_from_what_poses_have(springs):
+    """Nothing within a pose is left to scatter, and yet readings err each by itself."""
+    answer = answered(springs, understated(100, 2.5, poses=20, loads=2))
+    assert scatter(answer.final) is None
+    assert_said_to_be_too_small(answer, 2.5)
+
+
+def test_one_reading_a_pose_tells_neither_noise_nor_a_cause(springs):
+    answer = answered(springs, understated(100, 2.5, poses=40, loads=1))
+    assert answer.verdict == "outside"
+    assert answer.adequacy.undecided and answer.adequacy.understated is None
+    assert "nothing tells whether the readings are noisier" in lead_of(answer)
+    assert "has no structure" in " ".join(answer.noise_reasons)
 
 
 def test_hysteresis_is_named_and_not_taken_for_noise(springs):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
@@ -13,11 +13,14 @@ from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstic
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.checks.saturated import load_basis, pose_columns
 from sk120stiff.identify.checks.yardstick import scatter
+from sk120stiff.identify.solving import against_noise_alone
+from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements.poses import rows_by_label
 
 LEVEL = 1e-3  # probability below which something is missing beyond doubt
 FOUND = 8.0  # times a stated σ beyond which no statement is merely too small
-WITHOUT_SCATTER = 2.0  # the same where no scatter within poses bears it out
+WITHOUT_SCATTER = 2.0  # the same where nothing within poses bears it out
+LIKELIER = 6.0  # evidence by which every reading has to err by itself, rather than every pose
 OWN = {
     "proportional": "in proportion to the load at single poses",
     "constant": "constant at single poses",
@@ -46,6 +49,8 @@ class Adequacy:
         understated: By how much a stated σ looks too small, where that is all that is wrong; else
             None.
         closest: The suspect that the gap goes with most closely; None where there is none.
+        undecided: A stated σ is exceeded by so much that it is hardly a slip, with no structure and
+            nothing within poses that tells noise: that of another size, or what no suspect is like.
     """
 
     probability: float
@@ -55,6 +60,7 @@ class Adequacy:
     whole: LackOfFit | None = None
     understated: float | None = None
     closest: str | None = None
+    undecided: bool = False
 
     @property
     def lacking(self) -> bool:
@@ -89,6 +95,13 @@ class Adequacy:
                 f"σ looks {self.understated:.2f} times too small; nothing structured is left. It "
                 "stays the yardstick, and the standard errors are inflated by as much.",
             )
+        if self.undecided:
+            return (
+                f"What is left is {whole.factor:.3g} times the stated uncertainty and has no "
+                "structure: readings that are noisier by as much, or something that none of the "
+                "suspects looks like. Nothing here tells which; repeats (same pose, load and "
+                "branch) would. The standard errors account for it.",
+            )
         if whole.probability < LEVEL:
             return (
                 f"What is left is {whole.factor:.3g} times the stated uncertainty. Noise of that "
@@ -115,17 +128,19 @@ def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     """
     noise, whole = yardstick(fit), lack_of_fit(fit)
     size = explained(fit, named) / float(np.sqrt(noise.scale))
+    undecided = False
     if noise.source == "stated" and whole is not None and whole.probability < LEVEL:
         free, closest = _structure(fit, _free(fit))
         free |= unlike_scatter(fit)
         if _nothing_structured(fit, free, whole.factor):
             return _judged(free, size / whole.factor, whole, closest, whole.factor)
+        undecided = not _reading_by_reading(fit) and _bare(free, whole.factor)
     tests, closest = _structure(fit, noise)
     if whole is not None:
         taken = whole.freedom[0]
         beyond = whole.statistic * (1 if whole.freedom[1] is None else taken) - taken
         tests[WHOLE] = whole.probability, beyond
-    return _judged(tests, size, whole, closest)
+    return replace(_judged(tests, size, whole, closest), undecided=undecided)
 
 
 def _judged(
@@ -158,8 +173,25 @@ def _free(fit: Fit) -> Yardstick:
 
 
 def _nothing_structured(fit: Fit, tests: Tests, factor: float) -> bool:
-    if factor >= (FOUND if scatter(fit) is not None else WITHOUT_SCATTER):
+    if factor >= (FOUND if _reading_by_reading(fit) else WITHOUT_SCATTER):
         return False
+    return _bare(tests, factor)
+
+
+def _reading_by_reading(fit: Fit) -> bool:
+    """Do poses tell noise from what every pose has of its own?
+
+    By readings about a line in the load, or where there are too few of them by the likelihood: a
+    larger noise makes the gap likelier than any such error beside the noise that was stated.
+    """
+    if scatter(fit) is not None:
+        return True
+    found = variance_components(against_noise_alone(fit))
+    return bool(found.inflation_gain > found.gain + LIKELIER)
+
+
+def _bare(tests: Tests, factor: float) -> bool:
+    """No structure: the more a statement is exceeded, the less it takes to think otherwise."""
     return _smallest(tests) >= min(LEVEL * factor**4, 0.05)
 
 

@@ -94,6 +94,12 @@ def _ambiguous(answer: Explanation) -> str:
 
 def _outside(answer: Explanation) -> str:
     step = answer.steps[0]
+    if answer.adequacy.undecided:
+        return (
+            "More is left than the stated noise makes, and nothing tells whether the readings are "
+            "noisier than stated or something is missing: it has no structure. The model misses "
+            f"the readings by {um(step.fit_rms)} µm rms per axis; {noise_makes(answer)}."
+        )
     why = "no effect of the catalogue explains it"
     if answer.unnamed:
         why = "no name for it is confirmed by other poses"
