@@ -10,6 +10,7 @@ from sk120stiff.data_checks import place_of
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
+from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import TO_AND_FRO
 from sk120stiff.explain.localise.words import microns
 
@@ -173,6 +174,15 @@ def _largest(answer: Explanation) -> list[str]:
     ]
 
 
+def _of_a_change(pose: str) -> str:
+    return (
+        f"Find out what changed before pose {pose} was read: what came loose there, was tightened "
+        "or let go, or whether readings of two arms stand in one file. Then run this on the poses "
+        f"before {pose} and on those from {pose} on, each by themselves (column use: 0 leaves a "
+        "row out)."
+    )
+
+
 def _of_the_remainder(answer: Explanation) -> str:
     """What would tell more of what is left."""
     place = accounted(answer)
@@ -181,12 +191,16 @@ def _of_the_remainder(answer: Explanation) -> str:
             "The rest comes and goes with the time: read the zero again before every load, and "
             "keep sun, draughts and air conditioning from arm and instrument."
         )
+    if place is not None and (since := changed_at(place)):
+        return _of_a_change(since)
     if place is not None:
         return (
             f"The rest goes with {place}, and beside that only noise is left: look there, and read "
             "at more poses and loads that change it, so that its law shows."
         )
     most = mostly_accounted(answer)
+    if most is not None and (since := changed_at(most)):
+        return _of_a_change(since)
     if most is not None:
         return (
             f"Most of the rest goes with {most}: look there first, and read at more poses and "

@@ -39,7 +39,7 @@ def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
     gap = -fit.residual / unit
     gap = gap - inside @ (inside.T @ gap)
     evidence, squares = [0.0], [np.zeros((J.shape[1],) * 2)]  # first: that there is no such cause
-    for part, columns in zip(lineup.parts, lineup.reading, strict=True):
+    for suspect, part, columns in zip(lineup.suspects, lineup.parts, lineup.reading, strict=True):
         length = np.sqrt((columns[fit.problem.read] ** 2).mean(axis=0))
         seen = length > 0.0
         if not seen.any():
@@ -49,7 +49,8 @@ def moved_by_a_foreign_cause(fit: Fit, remains: float) -> Array:
         left, size, right = np.linalg.svd(drawn - inside @ (inside.T @ drawn), full_matrices=False)
         along = left.T @ gap
         told = size**2 / (1.0 + size**2)
-        evidence.append(float(told @ along**2 - np.log1p(size**2).sum()))
+        choice = suspect.price_of_choice  # those alike are one cause together
+        evidence.append(float(told @ along**2 - np.log1p(size**2).sum()) - choice)
         taken = inverse @ drawn @ right.T  # what the parameters take on of each
         likeliest = taken @ (size / (1.0 + size**2) * along)
         rest = taken / np.sqrt(1.0 + size**2)

@@ -103,7 +103,7 @@ def foretold_on_file(
     try:
         both = load_cases_of(base.model.robot, readings + other)
         suspect = suspect_named(name, base.model, both)
-        if suspect is None or suspect.family == "series":
+        if suspect is None or suspect.family in ("series", "change"):
             return ()
         model = base.model + nuisance_of(suspect, base.model, both)
         with_it = fit(model, readings, noise=noise)

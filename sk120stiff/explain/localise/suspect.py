@@ -14,7 +14,8 @@ class Suspect:
     """One thing that the gap may go with.
 
     Attributes:
-        family: ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument`` or ``series``.
+        family: ``place``, ``law``, ``linkage``, ``angle``, ``axes``, ``instrument``, ``series`` or
+            ``change``.
         name: Completes the sentence "The gap goes with ...".
         columns: (N, 3, k) change of the readings per unit of each of k free factors, base axes [m].
         abscissa: (N,) the variable that a figure draws the gap against.

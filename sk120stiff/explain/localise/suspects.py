@@ -15,6 +15,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
 from sk120stiff.errors import two_digits
+from sk120stiff.explain.localise.changes import changes
 from sk120stiff.explain.localise.drives import angles, drives, laws, waves
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model import Model
@@ -87,6 +88,9 @@ def suspects_of(model: Model, load_cases: LoadCases, predicted: Array) -> tuple[
         *_loads_in_axes(load_cases),
         *_instruments(model, load_cases, predicted),
         *_series(load_cases),
+        *changes(
+            load_cases, (_tipping(load_cases), _turning_tool(load_cases)), [*drives(load_cases)]
+        ),
     )
 
 
@@ -101,7 +105,7 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
     robot, count = load_cases.robot, load_cases.count
     base = np.broadcast_to(robot.foundation, (count, 3))
     world = np.broadcast_to(np.eye(3), (count, 3, 3))
-    tips = _turning("place", "the moment that tips the base", load_cases, base, world[..., :2])
+    tips = _tipping(load_cases)
     yield replace(tips, frees=("base_rocking",))
     yield _floor(tips)
     name = "the moment that turns the base about z"
@@ -128,12 +132,24 @@ def _places(load_cases: LoadCases) -> Iterator[Suspect]:
             yield replace(twists, frees=(f"link_torsion:{joint.link}", *behind))
         pulled = _pushing("place", f"the force that {joint.link} carries", load_cases, frames)
         yield replace(pulled, frees=behind)
-    tip = screws.frame_position
     at_tool = (
-        _turning("place", "the moment that the tool carries", load_cases, tip, load_cases.rotation),
+        _turning_tool(load_cases),
         _pushing("place", "the force that the tool carries", load_cases, load_cases.rotation),
     )
     yield from (replace(each, frees=("tool_compliance",)) for each in at_tool)
+
+
+def _tipping(load_cases: LoadCases) -> Suspect:
+    """The base tips about x and y."""
+    base = np.broadcast_to(load_cases.robot.foundation, (load_cases.count, 3))
+    world = np.broadcast_to(np.eye(3), (load_cases.count, 3, 3))
+    return _turning("place", "the moment that tips the base", load_cases, base, world[..., :2])
+
+
+def _turning_tool(load_cases: LoadCases) -> Suspect:
+    """The tool turns on what it is held by."""
+    tip, rotation = load_cases.nominal.frame_position, load_cases.rotation
+    return _turning("place", "the moment that the tool carries", load_cases, tip, rotation)
 
 
 def _floor(tips: Suspect) -> Suspect:
