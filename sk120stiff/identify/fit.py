@@ -249,8 +249,8 @@ class Fit:
     def overlays(self) -> tuple[Overlay, ...]:
         """Parameters that lie on one another, of which the bounds alone say who carries what."""
         reach = self.reach() * self.unit
-        bounds, span = self.problem.bounds, self.problem.span
-        return overlays(self.x, *self.small, self.at_bound, bounds, span, reach)
+        bounds, plausible = self.problem.bounds, self.problem.plausible
+        return overlays(self.x, *self.small, self.at_bound, bounds, plausible, reach)
 
     @cached_property
     def held(self) -> Mask:
@@ -375,6 +375,7 @@ class Fit:
             self.at_bound,
             self.problem.bounds,
             self.problem.span,
+            self.problem.plausible,
             self.reach(level),
             self.unit,
         )

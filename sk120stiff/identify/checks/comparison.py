@@ -128,7 +128,7 @@ def _note(found: Fit, loss: float | None, std: float | None, *, first: bool, bic
     lost = int((~found.identifiable).sum())
     shared = sum(p.origin == CALIBRATED for p in found.parameters)
     bound = int(found.at_bound.sum())
-    far = int((np.abs(found.x) > found.problem.span).sum())
+    far = int((np.abs(found.x) > found.problem.plausible).sum())
     for count, what in (
         (lost, "not identifiable"),
         (shared, "known up to a calibration"),

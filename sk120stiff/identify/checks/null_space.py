@@ -36,7 +36,7 @@ def weak_directions(fit: Fit) -> tuple[str, ...]:
     told = {k for overlay in fit.overlays for k in overlay.members}
     told |= {k for group, _ in _null_groups(fit) for k in group}
     said += [_bound(fit, int(k)) for k in np.flatnonzero(fit.at_bound & fit.held)]
-    far = (np.abs(fit.x) > fit.problem.span) & fit.identifiable
+    far = (np.abs(fit.x) > fit.problem.plausible) & fit.identifiable
     said += [_implausible(fit.parameters[k]) for k in np.flatnonzero(far)]
     if fit.degrees_of_freedom < 1 and not fit.sigma_known:
         said.append(
@@ -226,6 +226,8 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
     parameters = [fit.parameters[k] for k in group]
     if len(group) == 1:
         why = why_unseen(fit.problem.load_cases, parameters[0])
+        if not why and parameters[0].effect.joint_spring:
+            why = "no usual value would change them by as much as their noise"
         return f"{parameters[0].name} does not show in these readings: " + (
             f"{why}." if why else "no plausible value would change them by a tenth of their noise."
         )

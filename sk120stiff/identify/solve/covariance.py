@@ -18,9 +18,8 @@ def covariance_of(jacobian: Array, held: Mask, span: Array) -> Array:
     Args:
         jacobian: (R, P) whitened derivative.
         held: (P,) parameters that a bound holds; their rows and columns are zero.
-        span: (P,) sizes beyond which the parameters are implausible. A parameter is lost if a
-            plausible change that does not show would move it by a third of its standard error or
-            more.
+        span: (P,) sizes over which a change has to show. A parameter is lost if as large a change
+            that does not show would move it by a third of its standard error or more.
     """
     P = jacobian.shape[1]
     covariance = np.zeros((P, P))
@@ -67,6 +66,7 @@ def internal_intervals(
     held: Mask,
     bounds: tuple[Array, Array],
     span: Array,
+    plausible: Array,
     reach: float,
     unit: float,
 ) -> Array:
@@ -76,7 +76,7 @@ def internal_intervals(
     bound is near, that is x ± reach·std.
 
     Args:
-        x, jacobian, residual, held, bounds, span: Of the fit, in scaled parameters.
+        x, jacobian, residual, held, bounds, span, plausible: Of the fit, in scaled parameters.
         reach: Quantile of the normal or Student distribution.
         unit: Noise seen over noise assumed; infinite where nobody knows.
     """
@@ -89,7 +89,7 @@ def internal_intervals(
     near = ~lost & ((x - half <= bounds[0]) | (x + half >= bounds[1]))
     if not near.any():
         return ends
-    valley = linear_valley(x, residual, jacobian, bounds, span, np.where(lost, 0.0, std))
+    valley = linear_valley(x, residual, jacobian, bounds, span, plausible, np.where(lost, 0.0, std))
     for k in np.flatnonzero(~lost):
         ends[k] = [valley.end(int(k), side, reach * unit) for side in (-1.0, 1.0)]
     return ends

@@ -62,7 +62,7 @@ def overlays(
     residual: Array,
     at_bound: Mask,
     bounds: tuple[Array, Array],
-    span: Array,
+    plausible: Array,
     reach: float,
 ) -> tuple[Overlay, ...]:
     """Sets of parameters of which the bounds alone decide who carries what.
@@ -71,15 +71,15 @@ def overlays(
     their bounds, is `INFLATED` times what it is with these nailed to them.
 
     Args:
-        x, jacobian, residual, at_bound, bounds, span: Of the fit, in scaled parameters.
+        x, jacobian, residual, at_bound, bounds, plausible: Of the fit, in scaled parameters.
         reach: Square root of the rise of the misfit at the interval's ends, in units of the assumed
             noise.
     """
     held, moving = np.flatnonzero(at_bound), np.flatnonzero(~at_bound)
     if not len(held) or not len(moving) or not np.isfinite(reach):
         return ()
-    std = np.sqrt(np.diag(covariance_of(jacobian, at_bound, span)))
-    answer = _answers(jacobian, residual, held, moving, span, reach)
+    std = np.sqrt(np.diag(covariance_of(jacobian, at_bound, plausible)))
+    answer = _answers(jacobian, residual, held, moving, plausible, reach)
     nailed = INFLATED * reach * std[moving]
     known = np.isfinite(nailed) & (nailed > 0.0)
     makes_room = known & (np.minimum(answer, np.abs(x[moving])) > nailed)  # (held, moving)
@@ -89,7 +89,7 @@ def overlays(
         k = int(moving[place])
         if valley is None:
             own = np.where(np.isfinite(std), std, 0.0)
-            valley = linear_valley(x, residual, jacobian, bounds, span, own)
+            valley = linear_valley(x, residual, jacobian, bounds, plausible, plausible, own)
         if max(abs(valley.end(k, side, reach) - x[k]) for side in (-1.0, 1.0)) > nailed[place]:
             group = {k, *(int(h) for h in held[makes_room[:, place]])}
             touching = [g for g in groups if g & group]
@@ -102,23 +102,23 @@ def _answers(
     residual: Array,
     held: Index,
     moving: Index,
-    span: Array,
+    plausible: Array,
     reach: float,
 ) -> Array:
     """(held, moving) how far each moving parameter follows as one held leaves its bound.
 
     It leaves it as far as the misfit allows, the moving ones refitted without regard to bounds.
     """
-    U, singular, V, _ = seen_directions(jacobian[:, moving], span[moving])
+    U, singular, V, _ = seen_directions(jacobian[:, moving], plausible[moving])
     out = np.zeros((len(held), len(moving)))
     for row, one in enumerate(held):
         column = jacobian[:, one]
         beyond = float(np.linalg.norm(column - U @ (U.T @ column)))
         slope = abs(float(column @ residual))  # the misfit rises with it, else it were no bound
-        room = float(span[one])
+        room = float(plausible[one])
         if beyond > 0.0:
             room = min(room, (np.hypot(slope / beyond, reach) - slope / beyond) / beyond)
-        out[row] = np.abs(span[moving] * (V @ ((U.T @ column) / singular))) * room
+        out[row] = np.abs(plausible[moving] * (V @ ((U.T @ column) / singular))) * room
     return out
 
 
@@ -152,7 +152,7 @@ def separating(problem: Problem, group: Overlay, jacobian: Array) -> Separating 
     others = np.setdiff1d(np.arange(jacobian.shape[1]), own)
     inside, _ = np.linalg.qr(jacobian[:, others])
     left = jacobian[:, own] - inside @ (inside.T @ jacobian[:, own])
-    known = left.T @ left + np.diag(problem.span[own] ** -2.0)  # no value is beyond plausible
+    known = left.T @ left + np.diag(problem.plausible[own] ** -2.0)  # no value is beyond plausible
     size = np.diag(known)
     before = _worst(known[None], size)[0]
     after = _worst(known + np.einsum("nia,nib->nab", columns, columns), size)

@@ -69,7 +69,7 @@ def polish(
         start: (P,) clipped to the bounds. Along directions that are not seen the answer stays
             there.
         bounds: Lower and upper (P,).
-        span: (P,) sizes of the parameters beyond which they are implausible.
+        span: (P,) sizes of the parameters over which a change has to show.
         fine: Relative step at which nothing is left to gain.
         steps: How many there may be. Default: `STEPS`, and four for every parameter.
 

@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.errors import InputError
+from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.measurements import FormWhitener, Measurements, NoiseModel, Whitener
 from sk120stiff.model import Model
 
@@ -93,9 +94,31 @@ class Problem:
         return np.array([self.model.parameters[k].spec.typical for k in self.free])
 
     @cached_property
-    def span(self) -> Array:
+    def plausible(self) -> Array:
         """(P_free,) sizes in scaled units beyond which a value is implausible."""
         return np.array([self.model.parameters[k].spec.plausible for k in self.free]) / self.scale
+
+    @cached_property
+    def span(self) -> Array:
+        """(P_free,) sizes in scaled units over which a change has to show, see `seen_directions`.
+
+        What is plausible. Of a joint's spring whose standard size before anything is read shows by
+        less than the noise, all others known, it is so little that nothing shows: every joint has a
+        spring, and what a floor that tips lets such a load tell of it is no measurement.
+        """
+        out = self.plausible.copy()
+        cases, robot = self.load_cases, self.model.robot
+        torque = cases.nominal.at(cases.force_point).torques(cases.wrench)
+        columns = cases.nominal.linear_jacobian * torque[:, None, :]  # (N, 3, n), base axes
+        along = np.swapaxes(cases.reading_axes, 1, 2) @ columns
+        shows = np.linalg.norm(self.whitener.apply(along), axis=0)
+        for place, k in enumerate(self.free):
+            parameter = self.model.parameters[k]
+            if parameter.effect.joint_spring:
+                usual = parameter.spec.usual
+                if shows[robot.actuated.index(parameter.effect.where)] * usual < 1.0:
+                    out[place] = FAINTEST * usual / self.scale[place]
+        return out
 
     @cached_property
     def usual(self) -> Array:
@@ -125,7 +148,7 @@ class Problem:
 
         Only parameters that the readings do not show keep them.
         """
-        return np.clip(self.model.values[self.free] / self.scale, -self.span, self.span)
+        return np.clip(self.model.values[self.free] / self.scale, -self.plausible, self.plausible)
 
     @property
     def judged(self) -> Mask | None:

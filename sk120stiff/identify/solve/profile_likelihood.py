@@ -26,7 +26,8 @@ class Valley:
         evaluate: Residual (R,) in units of the noise and derivative (R, P), of parameters (P,).
         x, misfit: (P,) minimum within bounds, and the sum of squares there.
         bounds: Lower and upper (P,).
-        span: (P,) sizes beyond which the parameters are implausible.
+        span: (P,) sizes over which a change has to show, see `seen_directions`.
+        plausible: (P,) sizes beyond which the parameters are implausible.
         std: (P,) standard errors, to start from; zero where a bound holds the estimate.
         slopes: (P,) lengths of the columns of the derivative at the minimum.
     """
@@ -36,6 +37,7 @@ class Valley:
     misfit: float
     bounds: tuple[Array, Array]
     span: Array
+    plausible: Array
     std: Array
     slopes: Array
 
@@ -88,7 +90,7 @@ class Valley:
             residual, jacobian = self.evaluate(x)
             return residual, jacobian[:, others]
 
-        far = np.maximum(self.span, np.abs(self.x))
+        far = np.maximum(self.plausible, np.abs(self.x))
         lower, upper = (np.clip(bound, -far, far)[others] for bound in self.bounds)
         found = polish(evaluate, near[others], (lower, upper), self.span[others], fine=CLOSE**2)
         whole[others] = found.x
@@ -101,6 +103,7 @@ def linear_valley(
     jacobian: Array,
     bounds: tuple[Array, Array],
     span: Array,
+    plausible: Array,
     std: Array,
 ) -> Valley:
     """The valley of the linearised problem, its many rows folded into as many as parameters."""
@@ -111,4 +114,4 @@ def linear_valley(
         return r + J @ (at - x), J
 
     slopes = np.linalg.norm(jacobian, axis=0)
-    return Valley(evaluate, x, float(r @ r), bounds, span, std, slopes)
+    return Valley(evaluate, x, float(r @ r), bounds, span, plausible, std, slopes)

@@ -37,6 +37,7 @@ def profile_intervals(
         misfit=fit.chi_square,
         bounds=problem.bounds,
         span=problem.span,
+        plausible=problem.plausible,
         std=np.sqrt(variance),
         slopes=np.linalg.norm(fit.jacobian, axis=0),
     )
