@@ -75,5 +75,6 @@ def _of_remainder(model: Model, std: Array | None) -> str:
         return f"; {NO_REMAINDER}"
     size = f"{two_digits(1e6 * rms(std))} µm"
     if not left.significant:
-        return f", {size} from what it may lack (the fit left no more than noise, which hides some)"
+        hidden = "(the fit left no more than noise may make, which hides some)"
+        return f", {size} from what it may lack {hidden}"
     return f", {size} from what the model leaves unexplained"

@@ -92,3 +92,18 @@ def test_nothing_is_said_where_nothing_hangs(tmp_path: Path) -> None:
     found = sk.fit(sk.base_model(robot_of(path)), data)
     assert isinstance(found, Calibration)
     assert not any(SAID in line for line in findings(found, data))
+
+
+def test_springs_that_rest_on_the_arms_own_weight_alone_say_so(tmp_path: Path) -> None:
+    """A gas strut of 300 N·m that nobody stated made a spring 25 % too stiff, and nothing said it
+    might.
+    """
+    words = "own weight bends it here"
+    for folder, masses, told in (("own", [0.0], True), ("hung", [0.0, 60.0], False)):
+        (tmp_path / folder).mkdir()
+        path = hung(tmp_path / folder, masses)
+        data, model = sk.read(path), sk.base_model(robot_of(path))
+        assert model is not None
+        found = sk.fit(model, data)
+        assert isinstance(found, Calibration)
+        assert any(words in line for line in findings(found, data)) == told

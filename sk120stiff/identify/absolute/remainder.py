@@ -9,6 +9,7 @@ from scipy import stats
 
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.model_form import ModelForm
+from sk120stiff.identify.absolute.repeated import pure_error
 from sk120stiff.model.uncertainty import Remainder
 
 LEVEL = 0.01  # probability of noise alone below which what is left is significant
@@ -84,12 +85,19 @@ def chance_of_noise(final: Calibration) -> float | None:
 
 
 def remainder_at_other_poses(final: Calibration) -> Remainder | None:
-    """What is left, as predictions need it: as large whatever hangs on the arm; None: unknown."""
+    """What is left, as predictions need it: as large whatever hangs on the arm; None: unknown.
+
+    Where no noise is stated repeats tell how much of the gap is none. Without them it may be noise
+    or what the model lacks: all of it is the most that is missing, and noise explains it as well.
+    """
     size, chance = left_beyond_noise(final), chance_of_noise(final)
-    if size is None or chance is None or not len(final.problem.lengths):
+    if not len(final.problem.lengths) or final.degrees_of_freedom < 1:
         return None
-    best, _, high = size
-    more = (best**2 + 0.5 * (high**2 - best**2)) ** 0.5  # half of an interval: a standard error
+    if size is None or chance is None:
+        best, more, chance = _of_the_gap(final)
+    else:
+        best, _, high = size
+        more = (best**2 + 0.5 * (high**2 - best**2)) ** 0.5  # half of an interval: a standard error
     return Remainder(
         rms=np.full(3, best),
         upper=np.full(3, more),
@@ -100,6 +108,17 @@ def remainder_at_other_poses(final: Calibration) -> Remainder | None:
         probability=chance,
         significant=chance < LEVEL,
     )
+
+
+def _of_the_gap(final: Calibration) -> Size:
+    """Rms of the gap per axis beyond the noise and its upper limit [m], and the chance of noise."""
+    numbers, freedom = len(final.problem.rows), final.degrees_of_freedom
+    gap, again = final.rms * float(np.sqrt(numbers / freedom)), pure_error(final)
+    if again is None:
+        return 0.0, gap, 1.0
+    best = float(np.sqrt(max(gap**2 - again.sigma**2, 0.0)))
+    chance = float(stats.f.sf((gap / again.sigma) ** 2, freedom, again.freedom))
+    return best, max(best, gap / float(np.sqrt(again.freedom))), chance
 
 
 def remainder_entry(final: Calibration) -> dict[str, Any]:

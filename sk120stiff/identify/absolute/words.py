@@ -131,7 +131,8 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))
     said += _branches(readings)
-    said += _hung(found, readings) + _payload(found, readings) + _implausible(found)
+    said += _hung(found, readings) + _payload(found, readings) + _by_weight(found, readings)
+    said += _implausible(found)
     if found.waves:
         said.append(
             f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
@@ -203,6 +204,25 @@ def _hung(found: Calibration, readings: Measurements) -> list[str]:
         "Where the payload hangs is not stated: it is taken to be the origin of "
         f"{found.model.robot.tool_frame}, and springs rest on that. Write the centre of its mass "
         "as payload.point into the YAML file, or payload: {fit: true}."
+    ]
+
+
+def _by_weight(found: Calibration, readings: Measurements) -> list[str]:
+    """That springs rest on the arm's own weight alone, of which no file is sure."""
+    said, hidden = readings.absolute, unseen(found)
+    springs = [
+        p for p in found.parameters if isinstance(p.effect, Elastic) and p.name not in hidden
+    ]
+    own = {effect.name for effect in found.model.effects} & {"link_masses", "gravity_compensator"}
+    if said is None or not springs or own or readings.wrench[readings.use].any():
+        return []
+    if said.payload[readings.use].any():
+        return []
+    return [
+        "Nothing but the arm's own weight bends it here, so springs are as right as its masses in "
+        f"the URDF ({found.model.robot.total_mass:.3g} kg) and as it has no balancer that the URDF "
+        "does not know: of masses 10 % too small every spring is 10 % too soft, and no ± here "
+        "knows of it. Positions with a known payload beside those without tell."
     ]
 
 

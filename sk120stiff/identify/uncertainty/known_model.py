@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.identify.checks.lack_of_fit import lack_of_fit
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.beforehand import Beforehand
@@ -32,11 +31,11 @@ def known_of_displacements(fit: Fit, left: LeftOver | None = None) -> Model:
     """
     if not np.isfinite(fit.unit):
         return fit.model
-    test, noise = lack_of_fit(fit), yardstick(fit)
+    noise = yardstick(fit)
     sigma = noise.sigma or fit.problem.noise.sigma * fit.noise_factor
     known = known_estimates(fit, sigma, _source(fit, noise))
     told = None if fit.problem.weights is not None else _remainder(fit, left or left_over(fit))
-    if told is not None and (test is not None or told.significant):
+    if told is not None:
         known = replace(known, remainder=told)
     return fit.model.known(known)
 
