@@ -10,6 +10,7 @@ from sk120stiff.data_checks import place_of
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
+from sk120stiff.explain.judge.implausible import MORE_THAN_ALL
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import TO_AND_FRO
 from sk120stiff.explain.localise.words import microns
@@ -21,6 +22,9 @@ CHECKED = {
     "sensor": "no fault of the arm; check how the force sensor was calibrated and mounted",
     "tracker": "no fault of the arm; check how the tracker stood and was aligned",
 }
+STATED = {
+    "force_point": "measure where the load acts and write force: {point: ...} into the YAML file",
+}
 BY_NATURE = "that is how such gears are, no fault of the arm"
 REPEATS = "repeat a few readings (same pose and load), so that the noise is known from them"
 LARGE = 2.0  # times what noise alone makes
@@ -30,7 +34,22 @@ VAGUE = 0.5  # of its size, by which it is known, from where on a share is no ad
 def next_step(answer: Explanation) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
-    return " ".join([*said[answer.verdict](answer), *_of_the_slips(answer)])
+    return " ".join(
+        [*_of_the_beyond(answer), *said[answer.verdict](answer), *_of_the_slips(answer)]
+    )
+
+
+def _of_the_beyond(answer: Explanation) -> list[str]:
+    """What explains by far the most at a size beyond belief comes before all that is believed."""
+    said = next((each for each in answer.unnamed if MORE_THAN_ALL in each), None)
+    if said is None:
+        return []
+    name = said.partition(f" {MORE_THAN_ALL}")[0]
+    how = STATED.get(name.partition(":")[0], "check units and what was stated of arm and tool")
+    return [
+        f"Before all else: {name} would explain more than what is named, at a size beyond belief; "
+        f"{how}. If it is so, run this again with --assume {name}."
+    ]
 
 
 def _of_the_slips(answer: Explanation) -> list[str]:
