@@ -23,6 +23,7 @@ from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Sou
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
+from sk120stiff.measurements.importers.header_rows import in_one_row
 from sk120stiff.measurements.importers.holds import as_repeats
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
@@ -263,7 +264,7 @@ def opened(source: Source) -> Source:
         source = dataclasses.replace(source, given=workbook_grid(source))
     elif is_matlab(source.data):
         source = dataclasses.replace(source, given=matlab_grid(source))
-    return with_numbered_markers(source)
+    return with_numbered_markers(in_one_row(source))
 
 
 def _assembled(
