@@ -21,6 +21,7 @@ SLIPS = [
     ("degrees labelled rad", "{5} look like deg labelled rad", "{1}[rad] → {1}[deg]"),
     ("degrees labelled rad,1", "the values of {1} look like deg", "header {1}[rad] → {1}[deg]"),
     ("radians labelled deg", "{5} look like rad labelled deg", "{0}[deg] → {0}[rad]"),
+    ("radians labelled deg,3,4", "of {3}, {4} look like rad labelled deg", "{4}[deg] → {4}[rad]"),
     ("force of the tool", "given in tool axes, not in base axes", "force: {{frame: tool}}"),
     ("displacement of the tool", "in tool axes, not in base", "displacement: {{frame: tool}}"),
     ("both of the tool", "both were given in tool axes", "and displacement: {{frame: tool}}"),
