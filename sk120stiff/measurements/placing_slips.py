@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, listed
+from sk120stiff.errors import listed
 from sk120stiff.measurements.angle_units import mixed
 from sk120stiff.measurements.cloud import Cloud
 from sk120stiff.measurements.registration import register
@@ -168,14 +168,6 @@ def _pairs(count: int) -> Iterator[tuple[int, ...]]:
         way = list(range(count))
         way[i], way[j] = j, i
         yield tuple(way)
-
-
-class OtherConvention(InputError):
-    """Joints that are another controller's; `convention` says how they are read."""
-
-    def __init__(self, what: str, *, where: str, remedy: str, convention: Convention) -> None:
-        super().__init__(what, where=where, remedy=remedy)
-        self.convention = convention
 
 
 @dataclass(frozen=True, eq=False)
