@@ -7,6 +7,7 @@ and ``Joint angles [deg]`` above ``q1 ... q6`` states their unit.
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Sequence
 
 from sk120stiff import units
@@ -17,7 +18,7 @@ from sk120stiff.measurements.importers.load_states import WITH, WITHOUT, state_o
 from sk120stiff.measurements.importers.words import is_unit, kind_of, meaning_of, unit_of_header
 
 SEARCHED = 80  # rows that may stand above the headers
-FEWEST = 3  # columns of a row of headers that are understood, at least
+FEWEST = 3  # columns that the lower row, alone or with the upper one, names at least
 SHORTEST = 3  # letters of a word above x y z; fewer may be the name of a marker, if no unit follows
 AXES = ("x", "y", "z")
 _MARKERS = ("nominal x", "measured x", "tcp x")  # words such as Target, Tracker, Tool: markers, too
@@ -64,12 +65,15 @@ def _joined(grid: Grid, at: int, actuated: Row) -> Grid | None:
     for k, cell in enumerate(lower):
         if k in told:
             headers.append(told[k] + (f" [{named[k][1]}]" if named[k][1] else ""))
-        elif not cell and meaning_of(unit_of_header(upper[k] if k < len(upper) else "")[0]):
-            headers.append(upper[k])
+        elif (not cell or (told and is_unit(cell.strip("[]() ")))) and _known(
+            name := _at(upper, k), actuated
+        ):
+            headers.append(f"{name} [{cell.strip('[]() ')}]" if cell else name)
         else:
             headers.append(cell)
     headers = [_with_unit(h, a, actuated) for h, a in zip(headers, above, strict=True)]
-    if tuple(headers) == lower or sum(_known(h, actuated) for h in headers) < FEWEST:
+    own = sum(k in told or _known(cell, actuated) for k, cell in enumerate(lower))
+    if tuple(headers) == lower or own < FEWEST:  # the lower row may be one of units
         return None
     rows, lines = list(grid.rows), list(grid.lines)
     rows[at] = tuple(headers)
@@ -80,12 +84,15 @@ def _joined(grid: Grid, at: int, actuated: Row) -> Grid | None:
     return dataclasses.replace(grid, rows=tuple(rows), lines=tuple(lines), how=how)
 
 
+def _at(row: Row, k: int) -> str:
+    return row[k] if k < len(row) else ""
+
+
 def _spread(upper: Row, lower: Row) -> list[str]:
     """What stands above every cell of the lower row: of an empty one, what stands left of it."""
     out: list[str] = []
     for k in range(len(lower)):
-        own = upper[k] if k < len(upper) else ""
-        out.append(own or (out[-1] if out and lower[k] else ""))
+        out.append(_at(upper, k) or (out[-1] if out and lower[k] else ""))
     return out
 
 
@@ -107,16 +114,16 @@ def _told(above: Sequence[str], below: Sequence[str], where: str) -> dict[int, s
     both = [f"{a} {b}" if b else "" for a, b in zip(pairs, below, strict=True)]
     states = with_states(both, [meaning_of(each) for each in both])
     for k, known in enumerate(states):  # x above before and after
-        if known and known[0].startswith((WITHOUT, WITH)) and state_of(below[k].lower()):
+        if known and known[0].startswith((WITHOUT, WITH)) and state_of(_plain(below[k])):
             out[k] = both[k]
     return out
 
 
 def _called(names: dict[str, str], where: str) -> dict[str, str]:
     """What stands above x y z → what the headers say of it; names of markers are left out."""
-    states = {cell: state_of(name.lower()) for cell, name in names.items()}
+    states = {cell: state_of(_plain(name)) for cell, name in names.items()}
     pair = {cell: state for cell, state in states.items() if state}
-    rests = {rest for _, rest in pair.values()}
+    rests = {re.sub(r"(?<!\w)\d+(?!\w)", "", rest).strip() for _, rest in pair.values()}
     if len(pair) > len({state for state, _ in pair.values()}):
         raise InputError(
             f"{listed(list(pair))}: positions of several markers without and with load stand side "
@@ -138,6 +145,10 @@ def _called(names: dict[str, str], where: str) -> dict[str, str]:
         if (_is_sure(meaning) or (all_known and meaning in _MARKERS[:2]) or "tcp" in cell.lower())
         and (len(names[cell]) >= SHORTEST or names[cell] != cell)
     }
+
+
+def _plain(name: str) -> str:
+    return " ".join(re.sub(r"[_.\-:()\[\],]+", " ", name).lower().split())
 
 
 def _is_sure(meaning: str) -> bool:

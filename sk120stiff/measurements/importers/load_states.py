@@ -7,20 +7,26 @@ from collections.abc import Sequence
 
 WITHOUT, WITH = "unloaded", "loaded"
 _WITHOUT = (
-    "unloaded|no load|without (?:the )?load|zero load|load free|before(?: the)? load(?:ing)?|"
-    "before|initial|zero|zero reading|"
-    "unbelastet|lastfrei|ohne (?:last|belastung|kraft)|vor (?:der )?(?:last|belastung)|vorher|"
-    "davor|anfangs|null|nullmessung|nullablesung|"
-    "sans charge|avant(?: la)? charge|avant|à vide|senza carico|prima|sin carga|antes"
+    "unloaded|no load|without(?: the)?(?: load)?|zero load|load free|free|undeformed|"
+    "before(?: the)?(?: load(?:ing)?)?|initial|start|zero|"
+    "unbelastet|lastfrei|unverformt|ohne(?: last| belastung| kraft)?|"
+    "vor(?: der)?(?: last| belastung)?|vorher|davor|anfangs?|null|leer|"
+    "sans(?: charge)?|avant(?: la)?(?: charge)?|à vide|senza carico|prima|sin carga|antes"
 )
 _WITH = (
-    "loaded|with (?:the )?load|under (?:the )?load|after(?: the)? load(?:ing)?|after|final|"
-    "belastet|(?:mit|unter) (?:last|belastung|kraft)|nach (?:der )?(?:last|belastung)|nachher|"
-    "danach|avec charge|sous charge|après(?: la)? charge|après|con carico|sotto carico|dopo|"
-    "con carga|bajo carga|después"
+    "loaded|(?:with|under)(?: the)? load|with|deformed|after(?: the)?(?: load(?:ing)?)?|final|end|"
+    "belastet|verformt|(?:mit|unter)(?: last| belastung| kraft)|mit|"
+    "nach(?: der)?(?: last| belastung)?|nachher|danach|ende|"
+    "(?:avec|sous) charge|avec|après(?: la)?(?: charge)?|(?:con|sotto) carico|dopo|"
+    "(?:con|bajo) carga|después"
 )
-_BESIDE = (
-    "load|last|belastung|charge|carico|carga"  # a force, unless a reading without stands there
+_BESIDE = "load|last|belastung|charge|carico|carga"  # a force, unless `unloaded` stands beside it
+_COMPOUND = re.compile(
+    r"(?<!\w)(anfangs|start|end|null|leer|last)(?=position|lage|messung|ablesung|punkt|koordinate|wert)"
+)
+_NOUNS = re.compile(  # what was read, which says nothing of the load
+    r"(?<!\w)(?:measurements?|meas|readings?|data|marker|tracker|smr|reflector|reflektor|"
+    r"messung|ablesung|lage|messpunkt|punkt|werte?|mesure|mis[eu]ra)(?!\w)"
 )
 _DIFFERENCE = "(?:delta|\N{GREEK SMALL LETTER DELTA}|\N{INCREMENT})"
 _DELTA = re.compile(rf"{_DIFFERENCE} ?[xyz](?![a-z])|[xyz] ?{_DIFFERENCE}(?![a-z])")
@@ -38,9 +44,12 @@ _MAY_BE = _longest_first(_BESIDE)
 
 
 def state_of(plain: str) -> tuple[str, str] | None:
-    """``unloaded`` or ``loaded``, and the name without that word; None where no word says it."""
+    """``unloaded`` or ``loaded``, and the name without that word; None where no word says it.
+
+    Of the rest, words for what was read (measurement, marker, Lage) are left out, too.
+    """
     for state, pattern in _STATES.items():
-        found = pattern.fullmatch(plain)
+        found = pattern.fullmatch(_COMPOUND.sub(r"\1 ", plain))
         if found:
             return state, _rest(found)
     return None
@@ -58,7 +67,7 @@ def with_states(names: Sequence[str], meanings: Meanings) -> Meanings:
     placed = words & {f"{kind}{axis}" for kind in _PLACES for axis in "xyz"}
     for k, name in enumerate(names):
         plain = re.sub(r"[\s_.\-]+", " ", name).strip().lower()
-        load = _MAY_BE.fullmatch(plain) if free and out[k] is None else None
+        load = _MAY_BE.fullmatch(_COMPOUND.sub(r"\1 ", plain)) if free and out[k] is None else None
         if load and (axis := _rest(load)) in ("x", "y", "z"):
             out[k] = f"{WITH} {axis}", 1.0
         known = out[k]
@@ -72,4 +81,4 @@ def _deviations() -> set[str]:
 
 
 def _rest(found: re.Match[str]) -> str:
-    return " ".join(f"{found['before']} {found['behind']}".split())
+    return " ".join(_NOUNS.sub("", f"{found['before']} {found['behind']}").split())

@@ -42,6 +42,7 @@ from sk120stiff.measurements.importers.rows_in_words import understood_words
 from sk120stiff.measurements.importers.several_files import joined
 from sk120stiff.measurements.importers.several_markers import (
     of_marker,
+    refuse_one_marker_twice,
     refuse_several_points,
     with_places,
 )
@@ -161,6 +162,7 @@ def import_readings(
     if held is not None:
         draft = drafted(held, told, robot.actuated, prismatic)
     draft = with_places(draft, told)
+    refuse_one_marker_twice(draft)
     differences, paired_rows, shifted = paired_loads(draft)
     mode: Mode = "positions"
     if draft.displaced:

@@ -38,6 +38,11 @@ def cells(sheet: Sheet) -> dict[str, tuple[str, ...]]:
         ("initial", "final"),
         ("Zero", "Load"),
         ("Sans charge", "Avec charge"),
+        ("Without", "With"),
+        ("Position 1 (unloaded)", "Position 2 (loaded)"),
+        ("Anfangsposition", "Endposition"),
+        ("Nullmessung", "Lastmessung"),
+        ("Initial position", "Deformed position"),
     ],
 )
 def test_groups_without_and_with_load_are_no_markers(
@@ -63,6 +68,21 @@ def test_units_stand_above_or_below(tmp_path: Path) -> None:
     axes = "x [mm],y [mm],z [mm]"
     below = sheet_of(tmp_path, table("before", "after", "Kraft [N]", axes), TWO)
     assert {c.unit for c in below.columns if c.meaning.startswith(("un", "loa"))} == {"mm"}
+
+
+def test_units_may_stand_below_the_names(tmp_path: Path) -> None:
+    text = (
+        "Pose,Joint 1,Joint 2,Force,Force,Force,before,before,before,after,after,after\n"
+        ",deg,deg,x,y,z,x,y,z,x,y,z\n,,,N,N,N,mm,mm,mm,mm,mm,mm\n" + ROWS
+    )
+    units = {column.meaning: column.unit for column in sheet_of(tmp_path, text, TWO).columns}
+    assert (units["joint 2"], units["fx"], units["loaded z"]) == ("deg", "N", "mm")
+
+
+def test_a_row_of_units_with_blanks_is_no_second_row_of_headers(tmp_path: Path) -> None:
+    text = "Pose,Point,Time,q1,q2,x,y,z\n,,,deg,deg,mm,mm,furlong\nA,1,0,10,20,1,2,3\n"
+    sheet = sheet_of(tmp_path, text, TWO)
+    assert sheet.lines == (3,) and sheet.has("pose", "name", "time", "x", "y", "z")
 
 
 def test_axes_above_before_and_after(tmp_path: Path) -> None:

@@ -25,6 +25,9 @@ TWO = ("joint_1", "joint_2")
         ("{} vor Belastung / mm", "{} nach Belastung / mm"),
         ("pos {} unloaded", "pos {} loaded"),
         ("ist {} unbelastet", "ist {} belastet"),
+        ("{}_vor", "{}_nach"),
+        ("Tracker {} start", "Tracker {} end"),
+        ("Nullmessung {}", "Lastmessung {}"),
     ],
 )
 def test_positions_before_and_after(tmp_path: Path, without: str, under: str) -> None:
