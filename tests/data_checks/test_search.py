@@ -64,6 +64,14 @@ def test_a_controllers_own_convention_is_told_as_a_whole() -> None:
     assert len(found.corrections) == 4
 
 
+def test_two_wrong_signs_of_the_force_may_be_half_a_turn() -> None:
+    known = ARMS["ur5"]()
+    by = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+    found = find_slip(known.robot, replace(known.readings, wrench=known.readings.wrench * by))
+    assert found is not None and len(found.corrections) == 2
+    assert "half a turn about y" in found.remedy and "upside down" in found.remedy
+
+
 def test_two_slips_at_once_are_both_told() -> None:
     known = ARMS["sk120"]()
     twice = replace(known, readings=spoilt(known, "degrees labelled rad"))
