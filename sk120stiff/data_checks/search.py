@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.data_checks.correction import Correction
+from sk120stiff.data_checks.correction import Correction, half_turn
 from sk120stiff.data_checks.from_a_row_on import from_a_row_on
 from sk120stiff.data_checks.passive import Passive, passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
@@ -66,6 +66,7 @@ class Slip:
     def remedy(self) -> str:
         """The edits, as sentences."""
         text = " ".join(correction.remedy for correction in self.corrections)
+        text += half_turn(self.corrections)
         if self.rival is not None:
             text += f" Nearly as good: {self.rival.said}. {self.rival.remedy}"
         return text

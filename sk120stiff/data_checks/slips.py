@@ -16,6 +16,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.data_checks.correction import Correction
 from sk120stiff.data_checks.sheet import Sheet
+from sk120stiff.measurements.angle_units import mixed
 from sk120stiff.measurements.data import Frame
 
 AXES = "xyz"
@@ -162,6 +163,8 @@ def _units_of_joints(sheet: Sheet) -> Iterator[Correction]:
     sizes = np.abs(sheet.joints[sheet.kept]).max(axis=0)
     groups = [turning] if len(turning) > 1 else []
     groups += [np.array([k]) for k in turning]
+    turns = ~np.array(sheet.robot.prismatic)
+    groups += [some for some, *_ in mixed(sheet.joints[sheet.kept], turns) if len(some) > 1]
     for group in groups:
         some = group[sizes[group] > 0.0]
         for written, meant, factor in (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from sk120stiff.measurements.cloud import FEWEST, Cloud
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing_distances import place_distances
 from sk120stiff.measurements.placing_slips import (
-    OtherConvention,
+    Convention,
     markers,
     moved_at,
     one_zero,
@@ -23,6 +24,7 @@ from sk120stiff.measurements.placing_slips import (
     with_sums,
 )
 from sk120stiff.measurements.registration import Registration
+from sk120stiff.measurements.upside_down import OtherConvention, standing
 from sk120stiff.robot import STANDARD_GRAVITY, Robot
 from sk120stiff.robot.rotations import rotation_vector
 
@@ -132,6 +134,8 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
             "nearer than any instrument reads and than any arm is built: they look computed, as a "
             "controller shows them, not measured. Check which columns are the measurement."
         )
+    if said.frame == "unknown" and len(stations) == 1:
+        notes += _say_if_it_hangs(cloud, readings)
     distance = np.full(readings.n_readings, np.nan)
     distance[whole] = cloud.left(found)
     wild = np.zeros(readings.n_readings, dtype=bool)
@@ -245,17 +249,49 @@ def _refuse_slips(
         ways.insert(0, (one_zero, "the zero of one joint elsewhere"))
     for found_by, what in ways:
         way = found_by(cloud.some(FEWER))
-        mapping = way.changed(readings.joint_names)
-        if mapping and way.rms < least:
-            said = ", ".join(f"{name}: {expression}" for name, expression in mapping.items())
+        if way.changed(readings.joint_names) and way.rms < least:
+            stands = standing(cloud.some(FEWER), way, _gravity(cloud.robot, readings))
+            way, written = stands.way, _as_written(readings)
             raise OtherConvention(
                 f"{told}. With {what} {1e3 * way.rms:.3g} mm are left",
                 where=where,
                 remedy="Check the controller's convention. If it is so, write into the YAML file: "
-                f"joints: {{{said}}}; where a joint has an expression there already, put that "
-                "in its place on the right.",
-                convention=way,
+                f"{written(way)}; where a joint has an expression there already, put that in its "
+                f"place on the right.{stands.beside(written)}",
+                standing=stands,
             )
+
+
+def _gravity(robot: Robot, readings: Measurements) -> Array:
+    """(3,) in axes of the base, as the file or else the robot has it."""
+    return robot.gravity_in_base if readings.gravity is None else readings.gravity
+
+
+def _as_written(readings: Measurements) -> Callable[[Convention], str]:
+    """How a convention stands in the YAML file."""
+
+    def written(way: Convention) -> str:
+        mapping = way.changed(readings.joint_names)
+        return f"joints: {{{', '.join(f'{n}: {e}' for n, e in mapping.items())}}}"
+
+    return written
+
+
+def _say_if_it_hangs(cloud: Cloud, readings: Measurements) -> list[str]:
+    """A sentence where the base stands upside down, and upright fits as well."""
+    n = cloud.a.shape[1]
+    as_it_is = Convention(0.0, np.eye(n), np.zeros(n))
+    found = standing(cloud.some(FEWER), as_it_is, _gravity(cloud.robot, readings))
+    turned = bool(found.way.changed(readings.joint_names))
+    if not (turned and found.upright and found.other is not None and found.other.hangs):
+        return []
+    first, second = readings.joint_names[:2]
+    return [
+        "These positions put the base upside down against their z axis, and the arm fits them as "
+        f"well upright: with {first} of the other sign and {second} half a turn on. If z is up and "
+        "the arm hangs from no ceiling, the joint columns have that other convention; else state "
+        "gravity in the YAML file."
+    ]
 
 
 def _refuse_moved(

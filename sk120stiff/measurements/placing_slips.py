@@ -10,7 +10,8 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
+from sk120stiff.errors import listed
+from sk120stiff.measurements.angle_units import mixed
 from sk120stiff.measurements.cloud import Cloud
 from sk120stiff.measurements.registration import register
 
@@ -49,6 +50,15 @@ def slips(cloud: Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, 
             rms = left(a=a)
             said = f"The column of {names[k]} looks like {was}"
             yield rms, rms, said, f"Write [{unit}] in its header."
+    for some, factor, meant, written in mixed(cloud.a, turning):
+        if len(some) < 2:
+            continue  # tried above
+        a = cloud.a.copy()
+        a[:, some] *= factor
+        rms = left(a=a)
+        said = f"The columns of {listed([names[k] for k in some])} look like {meant}, not {written}"
+        remedy = f"Write [{meant}] in their headers, and [{written}] in those of the others."
+        yield rms, rms, said, remedy
     for factor, unit in ((1e-3, "mm"), (1e3, "m"), (0.0254, "in"), (25.4, "in"), (1e-6, "um")):
         rms = left(x=cloud.x * factor)
         size = f"{factor:g} times too small" if factor > 1 else f"{1 / factor:g} times too large"
@@ -158,14 +168,6 @@ def _pairs(count: int) -> Iterator[tuple[int, ...]]:
         way = list(range(count))
         way[i], way[j] = j, i
         yield tuple(way)
-
-
-class OtherConvention(InputError):
-    """Joints that are another controller's; `convention` says how they are read."""
-
-    def __init__(self, what: str, *, where: str, remedy: str, convention: Convention) -> None:
-        super().__init__(what, where=where, remedy=remedy)
-        self.convention = convention
 
 
 @dataclass(frozen=True, eq=False)

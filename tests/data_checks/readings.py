@@ -132,7 +132,9 @@ def spoilt(arm: Arm, slip: str) -> Measurements:
                 else replace(data, joints=data.joints * factor)
             )
         case "radians labelled deg":
-            return replace(data, joints=data.joints * np.pi / 180.0)
+            by = np.ones(data.joints.shape[1])
+            by[which or slice(None)] = np.pi / 180.0
+            return replace(data, joints=data.joints * by)
         case "force of the tool":
             force = in_tool_axes(arm, data.wrench[:, :3])
             return replace(data, wrench=np.hstack([force, data.wrench[:, 3:]]))

@@ -21,6 +21,7 @@ SLIPS = [
     ("degrees labelled rad", "{5} look like deg labelled rad", "{1}[rad] → {1}[deg]"),
     ("degrees labelled rad,1", "the values of {1} look like deg", "header {1}[rad] → {1}[deg]"),
     ("radians labelled deg", "{5} look like rad labelled deg", "{0}[deg] → {0}[rad]"),
+    ("radians labelled deg,3,4", "of {3}, {4} look like rad labelled deg", "{4}[deg] → {4}[rad]"),
     ("force of the tool", "given in tool axes, not in base axes", "force: {{frame: tool}}"),
     ("displacement of the tool", "in tool axes, not in base", "displacement: {{frame: tool}}"),
     ("both of the tool", "both were given in tool axes", "and displacement: {{frame: tool}}"),
@@ -61,6 +62,14 @@ def test_a_controllers_own_convention_is_told_as_a_whole() -> None:
     for name in names[3:]:
         assert f"Negate the column {name}." in found.remedy
     assert len(found.corrections) == 4
+
+
+def test_two_wrong_signs_of_the_force_may_be_half_a_turn() -> None:
+    known = ARMS["ur5"]()
+    by = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+    found = find_slip(known.robot, replace(known.readings, wrench=known.readings.wrench * by))
+    assert found is not None and len(found.corrections) == 2
+    assert "half a turn about y" in found.remedy and "upside down" in found.remedy
 
 
 def test_two_slips_at_once_are_both_told() -> None:

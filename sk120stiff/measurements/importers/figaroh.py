@@ -16,6 +16,7 @@ _MARKER = re.compile(
     r"[ _.-]?(?P<what_before>d)?(?P<axis_behind>[xyz])",
     re.IGNORECASE,
 )
+_ZERO = re.compile(r"[xyz][ _.-]?0", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class Figaroh:
         Raises:
             InputError: The marker is not there or incomplete.
         """
+        _refuse_number_zero(source)
         found = [marker for name in _headers(source) if (marker := _axis_of(name))]
         numbers = sorted({number for number, _ in found})
         chosen = numbers if source.marker is None else [_chosen(source, numbers)]
@@ -76,6 +78,22 @@ class Figaroh:
             raise InputError("no marker is in this file", where=str(source.path))
         said = (f"Marker {number} is read.",) if source.marker else ()
         return sheet_of(source, layout, self.title, _why(source), notes=said)
+
+
+def _refuse_number_zero(source: Source) -> None:
+    """Refuse ``x0`` beside ``x1``, which may be a marker more, or a reading without load.
+
+    Raises:
+        InputError: It stands there.
+    """
+    zero = [name for name in _headers(source) if _ZERO.fullmatch(name)]
+    if zero:
+        raise InputError(
+            f"{', '.join(zero)} may be of one marker more, or a reading without load",
+            where=source.grid.place(0),
+            remedy="Rename the columns, or name all of them with --columns: x_unloaded ... and "
+            "x_loaded ... where the load came between; x1 ..., x2 ... for several markers.",
+        )
 
 
 def _stacked(sheets: dict[int, Sheet]) -> Sheet:

@@ -17,8 +17,9 @@ from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.measurements.placing import FITS, place
-from sk120stiff.measurements.placing_slips import OtherConvention
+from sk120stiff.measurements.placing_slips import Convention
 from sk120stiff.measurements.registration import Registration, register
+from sk120stiff.measurements.upside_down import OtherConvention
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
 
@@ -143,12 +144,16 @@ def stood_of(draft: Draft) -> Index:
 def _by_other_columns(error: OtherConvention, draft: Draft) -> Refusal:
     """The same refusal by the names of the file's own columns."""
     columns = [unit_of_header(column.header)[0] for column in draft.joints.taken]
-    joints = ",".join(error.convention.expressions(columns))
+
+    def told(way: Convention) -> str:
+        return f"--joints '{','.join(way.expressions(columns))}'"
+
+    stands = error.standing
     return Refusal(
         f"{error.what}. These are not this robot's positions as they stand: the joint columns "
         "look like another controller's",
         where=error.where,
-        remedy=f"Check its convention. If it is so, give --joints '{joints}'. "
+        remedy=f"Check its convention. If it is so, give {told(stands.way)}.{stands.beside(told)} "
         f"Understood: {_understood(draft)}.",
     )
 

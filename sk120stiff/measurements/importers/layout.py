@@ -12,6 +12,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
 from sk120stiff.measurements.importers.gauge_units import counted_unit, multiplied
 from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.load_states import with_states
 from sk120stiff.measurements.importers.masses import with_masses
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
 from sk120stiff.measurements.importers.unread_axes import (
@@ -134,11 +135,8 @@ def _numeric(row: tuple[str, ...]) -> bool:
 
 def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> bool:
     named = [unit_of_header(cell) for cell in row if not is_number(cell)]
-    known = [meaning(name, source.actuated) for name, _ in named]
-    known = with_gauges([name for name, _ in named], known)
-    known, _ = with_masses([name for name, _ in named], known, [unit for _, unit in named])
-    known = with_vendor_joints([name for name, _ in named], known, source.actuated)
-    found = {each[0] for each in with_torques(known, [unit for _, unit in named]) if each}
+    known, _ = _understood(source, [n for n, _ in named], [unit for _, unit in named], meaning)
+    found = {each[0] for each in known if each}
     return any(set(group) <= found for group in NEEDED[source.role])
 
 
@@ -155,7 +153,7 @@ def _laid_out(
         line = f"line {grid.lines[first]}"
         for k, cell in enumerate(grid.rows[first][: len(units)]):
             text = _unit_in(cell)
-            if text.lower() in (*BLANK, *_UNIT_WORDS) or units[k] is not None:
+            if text.lower() in (*BLANK, *_UNIT_WORDS) or units[k] or cell == headers[k]:
                 continue
             if is_unit(text):
                 units[k], places[k] = text, line
@@ -168,11 +166,7 @@ def _laid_out(
     above = [
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
-    known = [meaning(name, source.actuated) if name else None for name, _ in named]
-    known = with_gauges([name for name, _ in named], known)
-    known, units = with_masses([name for name, _ in named], known, units)
-    known = with_torques(known, units)
-    known = with_vendor_joints([name for name, _ in named], known, source.actuated)
+    known, units = _understood(source, [name for name, _ in named], units, meaning)
     meanings = as_measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):
@@ -182,6 +176,17 @@ def _laid_out(
     return Layout(
         headers, meanings, tuple(units), tuple(places), first, tuple(above), tuple(strange)
     )
+
+
+def _understood(
+    source: Source, names: list[str], units_of: list[str | None], meaning: Meaning
+) -> tuple[list[tuple[str, float] | None], list[str | None]]:
+    """What columns mean, each by its name and by those beside it, and their units."""
+    known = [meaning(name, source.actuated) if name else None for name in names]
+    known = with_gauges(names, with_states(names, known))
+    known, units_of = with_masses(names, known, units_of)
+    known = with_torques(known, units_of)
+    return with_vendor_joints(names, known, source.actuated), units_of
 
 
 def _unit_in(cell: str) -> str:

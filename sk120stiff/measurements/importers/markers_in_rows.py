@@ -7,6 +7,7 @@ import dataclasses
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import Grid
+from sk120stiff.measurements.importers.words import unit_of_header
 
 SEARCHED = 20  # rows that may stand above the headers
 AXES = ("x", "y", "z")
@@ -30,7 +31,7 @@ def with_numbered_markers(source: Source) -> Source:
 
 def _triples(row: tuple[str, ...]) -> list[int]:
     """Where X of every X Y Z in turn stands; none where other cells are called so."""
-    words = tuple(cell.strip().lower() for cell in row)
+    words = tuple(unit_of_header(cell)[0].lower() for cell in row)
     first = [k for k in range(len(words) - 2) if words[k : k + 3] == AXES]
     return first if words.count("x") == words.count("z") == len(first) else []
 
@@ -55,7 +56,11 @@ def _names_above(grid: Grid, at: int, first: list[int]) -> list[str] | None:
 def _numbered(source: Source, grid: Grid, at: int, first: list[int], names: list[str]) -> Source:
     headers = list(grid.rows[at])
     for number, place in enumerate(first, 1):
-        headers[place : place + 3] = [f"M{number} {axis}" for axis in AXES]
+        stated = [unit_of_header(cell)[1] for cell in headers[place : place + 3]]
+        headers[place : place + 3] = [
+            f"M{number} {axis} [{unit}]" if unit else f"M{number} {axis}"
+            for axis, unit in zip(AXES, stated, strict=True)
+        ]
     above = tuple(
         (line, "  ".join(cell for cell in row if cell))
         for line, row in zip(grid.lines[:at], grid.rows[:at], strict=True)

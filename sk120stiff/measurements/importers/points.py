@@ -15,6 +15,7 @@ from sk120stiff.measurements.importers.layout import (
     shaped,
     sheet_of,
 )
+from sk120stiff.measurements.importers.words import kind_of
 
 _BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
 _HOLDS = (  # what a table is of, by the meanings of its columns
@@ -52,12 +53,7 @@ class Points:
         layout = layout_of(source)
         if layout is None and (alone := _joints_alone(source)) is not None:
             _refuse_some_coordinates(source, alone)
-            raise InputError(
-                "this file holds joint values, and no positions",
-                where=str(source.path),
-                remedy="Give the file with the points as FILE, and this one as --joints-file."
-                + _others(alone),
-            )
+            raise _no_positions(source, alone)
         if layout is None:
             count, named, _ = shaped(source)
             names = _names(source, count) or ()
@@ -88,17 +84,26 @@ def _joints_alone(source: Source) -> Layout | None:
     return layout_of(replace(source, role="joints")) if source.role == "points" else None
 
 
-def _others(joints: Layout) -> str:
-    """What to do if the positions, displacements or distances stand in the columns left over."""
+def _no_positions(source: Source, joints: Layout) -> InputError:
+    """Joints, and other columns or none that may hold positions, displacements or distances."""
     pairs = zip(joints.headers, joints.meanings, strict=True)
-    left = [h for h, m in pairs if h and not (m and m[0].startswith("joint "))]
+    left = [h for h, m in pairs if h and (m is None or kind_of(m[0]) == "length")]
     if not left:
-        return ""
-    return (
-        f" If they stand in this file ({', '.join(left)}), name all columns with --columns: x,y,z "
-        "for positions, dx,dy,dz for displacements, d,ux,uy,uz for what a gauge reads along a "
-        "direction, a dash for what is not needed. Distances to "
-        "fixed points need no import: docs/FILES.md shows their file (l[mm],ax[m],ay[m],az[m])."
+        return InputError(
+            "this file holds joint values, and no positions",
+            where=str(source.path),
+            remedy="Give the file with the points as FILE, and this one as --joints-file.",
+        )
+    return InputError(
+        "this file holds joint values, and no positions or displacements that are understood; "
+        f"columns of unknown meaning are {', '.join(left)}",
+        where=str(source.path),
+        remedy="If they are there, name all columns with --columns: x,y,z for positions, dx,dy,dz "
+        "for displacements, 'x unloaded,y unloaded,z unloaded,x loaded,y loaded,z loaded' for "
+        "positions without and with load, d,ux,uy,uz for what a gauge reads along a direction, a "
+        "dash for what is not needed. Distances to fixed points need no import: docs/FILES.md "
+        "shows their file (l[mm],ax[m],ay[m],az[m]). If positions are in another file, give that "
+        "as FILE, and this one as --joints-file.",
     )
 
 

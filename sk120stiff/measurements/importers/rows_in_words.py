@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from sk120stiff import units
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.contract import Column, Sheet
@@ -27,7 +29,10 @@ _ALONG = re.compile(
     r"f?\s*(?P<before>[+-]?)\s*f?(?P<axis>[xyz])\s*(?P<after>[+-]?)(?:[ -]?(?:axis|achse))?",
     re.IGNORECASE,
 )
+_VECTORS = ("e{}", "e {}", "n{}", "n {}", "dir {}", "direction {}", "richtung {}", "force dir {}")
+_UNIT_LENGTH = 0.02  # by which the length of a unit vector may be off, as it is rounded
 _SIZES = re.compile(
+    r"\|(?:f|force|kraft)\||"
     r"(?:applied |test |prüf|mess|zug|druck)?(?:f|force|kraft|last|load|gewicht|masse|mass|weight)",
     re.IGNORECASE,
 )
@@ -43,7 +48,7 @@ def understood_words(sheet: Sheet, told: Told) -> Sheet:
     sheet = _with_repeats(sheet)
     direction = sheet.get("force direction") or sheet.get("direction")
     if direction is None:
-        return sheet
+        return _with_force_along(sheet, told)
     if all(_along(cell) or _empty(cell) for cell in direction.cells):
         return _with_forces(sheet, direction, told)
     why = (
@@ -133,6 +138,52 @@ def _with_forces(sheet: Sheet, direction: Column, told: Told) -> Sheet:
         new,
         f"fx, fy, fz are made of {size.header}, the size of the force on the robot, and "
         f"{direction.header}, its direction ({', '.join(shown)}).{mass}",
+    )
+
+
+def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
+    """The components of a force that is stated by its size and a unit vector, ex ey ez.
+
+    Raises:
+        InputError: A vector that is no unit vector in a row with load.
+    """
+    plain = [re.sub(r"[\s_.]+", " ", unit_of_header(c.header)[0]).lower() for c in sheet.spare]
+    for form in _VECTORS:
+        names = [form.format(axis) for axis in "xyz"]
+        of_matrix = form[0] == "n" and bool({"ox", "o x"} & set(plain))
+        if all(plain.count(name) == 1 for name in names) and not of_matrix:
+            along = [sheet.spare[plain.index(name)] for name in names]
+            break
+    else:
+        return sheet
+    size = _size(sheet, along[0], told)
+    if size is None or any(sheet.get(name) for name in FORCES):
+        return sheet
+    values, _, unit, stated = _as_force(sheet, size, told)
+    e = np.column_stack([numbers(sheet, column) for column in along])
+    off = (np.abs(np.linalg.norm(e, axis=1) - 1.0) > _UNIT_LENGTH) & (np.array(values) != 0.0)
+    if off.any():
+        row = int(np.argmax(off))
+        raise InputError(
+            f"({', '.join(c.cells[row] for c in along)}) is no unit vector, beside a load",
+            where=sheet.place(along[0], row),
+            remedy="Write the direction of the force with length 1, or call these columns fx, fy, "
+            "fz if they are its components.",
+        )
+    header = f"{size.header}, {', '.join(c.header for c in along)}"
+    made = [
+        Column(header, name, unit, stated, tuple(repr(float(v)) for v in column), 1.0, size.file)
+        for name, column in zip(FORCES, (np.array(values)[:, None] * e).T, strict=True)
+    ]
+    new = replace(
+        sheet,
+        columns=(*(c for c in sheet.columns if c is not size), *made),
+        spare=tuple(c for c in sheet.spare if c is not size and not any(c is a for a in along)),
+    )
+    return _noting(
+        new,
+        f"fx, fy, fz are {size.header}, the size of the force on the robot, times its direction "
+        f"{', '.join(c.header for c in along)}.",
     )
 
 

@@ -23,7 +23,9 @@ from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Sou
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
+from sk120stiff.measurements.importers.header_rows import in_one_row
 from sk120stiff.measurements.importers.holds import as_repeats
+from sk120stiff.measurements.importers.joint_units import unit_doubts
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
@@ -40,6 +42,7 @@ from sk120stiff.measurements.importers.rows_in_words import understood_words
 from sk120stiff.measurements.importers.several_files import joined
 from sk120stiff.measurements.importers.several_markers import (
     of_marker,
+    refuse_one_marker_twice,
     refuse_several_points,
     with_places,
 )
@@ -159,6 +162,7 @@ def import_readings(
     if held is not None:
         draft = drafted(held, told, robot.actuated, prismatic)
     draft = with_places(draft, told)
+    refuse_one_marker_twice(draft)
     differences, paired_rows, shifted = paired_loads(draft)
     mode: Mode = "positions"
     if draft.displaced:
@@ -202,7 +206,7 @@ def import_readings(
         orientation=read if isinstance(read, Orientation) else None,
         differences=int(paired_rows.sum()),
         useful_poses=len({draft.pose[k] for k in np.flatnonzero(paired_rows)}),
-        doubts=(*laid.doubts, *doubts),
+        doubts=(*laid.doubts, *doubts, *([] if laid.fitted else unit_doubts(draft, robot))),
         said=tuple(said),
     )
 
@@ -263,7 +267,7 @@ def opened(source: Source) -> Source:
         source = dataclasses.replace(source, given=workbook_grid(source))
     elif is_matlab(source.data):
         source = dataclasses.replace(source, given=matlab_grid(source))
-    return with_numbered_markers(source)
+    return with_numbered_markers(in_one_row(source))
 
 
 def _assembled(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Told
 
 APART = 0.01  # m; no arm comes back to a pose so far off, and two markers sit no nearer
+FEWEST = 3  # readings of both of two markers that tell whether they are one
 MOST = 0.5  # share of the readings repeated that lie apart, from which on that is no slip
 
 
@@ -120,6 +122,36 @@ def refuse_several_points(draft: Draft) -> None:
             where=str(sheet.path),
             remedy=f"Name the column that says which 'marker'. {remedy}",
         )
+
+
+def refuse_one_marker_twice(draft: Draft) -> None:
+    """Refuse two markers that are in one place everywhere: one marker, read without and with load.
+
+    Raises:
+        InputError: There are such.
+    """
+    names = _names(draft.marker_of)
+    if draft.displaced or len(names) < 2:
+        return
+    seen: dict[str, dict[tuple[str, bytes], int]] = {name: {} for name in names}
+    for row in map(int, np.flatnonzero(draft.use)):
+        if draft.marker_of[row]:
+            at = draft.pose[row], (draft.loads.wrench[row] + 0.0).tobytes()
+            seen[draft.marker_of[row]].setdefault(at, row)
+    for one, two in combinations(names, 2):
+        both = [(seen[one][at], seen[two][at]) for at in seen[one] if at in seen[two]]
+        apart = [float(np.linalg.norm(draft.measured[a] - draft.measured[b])) for a, b in both]
+        if len(apart) >= FEWEST and np.median(apart) < APART:
+            raise InputError(
+                f"the markers {one} and {two} are {1e3 * float(np.median(apart)):.2g} mm apart in "
+                "the median, at the same poses under the same load: they are one marker that was "
+                "read twice",
+                where=str(draft.sheet.path),
+                remedy="If that was without the load and with it, say so by the columns "
+                "x_unloaded, y_unloaded, z_unloaded, x_loaded, y_loaded, z_loaded (in the header, "
+                "or with --columns); if the readings are repeats, write a row for each, without a "
+                "column marker.",
+            )
 
 
 def _names(cells: tuple[str, ...]) -> list[str]:

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 
 from sk120stiff import units
 from sk120stiff.measurements.importers.gauge_units import counted_unit
+from sk120stiff.measurements.importers.load_states import state_of
 from sk120stiff.measurements.importers.masses import MASSES
 
 TS = ("tx", "ty", "tz")
 _AXIS = r"(?P<a>[xyz])"
-_FREE = "unloaded|no load|without load|unbelastet|ohne last|sans charge"
-_PUSHED = "loaded|with load|under load|belastet|mit last|avec charge"
 _MOVED = (
     "displacement|deflection|disp|verschiebung|verformung|auslenkung|d[eé]placement|d[eé]formation|"
     "spostamento|desplazamiento"
@@ -27,8 +26,6 @@ _AXES = {
     rf"|{_AXIS.replace('a>', 'b>')} (?:nom(?:inal)?|t|target|soll|theo\w*|cmd)",
     "deviation ": rf"(?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta)",
-    "unloaded ": rf"(?:{_FREE}) {_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_FREE})",
-    "loaded ": rf"(?:{_PUSHED}) {_AXIS}|{_AXIS.replace('a>', 'b>')} (?:{_PUSHED})",
     "d": rf"d ?{_AXIS}|(?:{_MOVED}) {_AXIS.replace('a>', 'b>')}"
     rf"|{_AXIS.replace('a>', 'c>')} (?:{_MOVED})",
     "turn ": rf"(?:d|delta) ?(?:r|rot(?:ation)?|phi|theta|th) ?{_AXIS}"
@@ -83,8 +80,10 @@ JOINT = re.compile(
 )
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*(.*)")
 _TAIL = re.compile(
-    r"(.+?)(?:[ /]\s*(mm|um|µm|m|inch|in|deg|rad|°|N|kN|daN|kgf|kp|kg|s)|_(mm|um|deg|rad|kg))"
+    r"(.+?)(?:(?:\s*[/,]\s*|\s+in\s+|\s)(mm|um|µm|m|inch|in|deg|rad|°|N|kN|daN|kgf|kp|kg|s)"
+    r"|_(mm|um|deg|rad|kg))"
 )
+_BEHIND = re.compile(r"(.+?)(?:\s*/\s*|\s+in\s+)([^\s/]+)")  # a unit in words, as Theta_1 / Grad
 _DEGREES = {"°C", "degC", "C", "ºC"}
 _COVERAGE = re.compile(r"k ?= ?([123](?:\.\d+)?)")
 _FILE_UNITS = {
@@ -127,6 +126,10 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
     tail = _TAIL.fullmatch(header.strip())
     if tail:
         return tail[1], tail[2] or tail[3]
+    behind = _BEHIND.fullmatch(header.strip())
+    unit = UNITS_IN_WORDS.get(behind[2].lower(), behind[2]) if behind else ""
+    if behind and is_unit(unit):
+        return behind[1], unit
     return header.strip(), None
 
 
@@ -149,6 +152,7 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     plain = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
     cover = _COVERAGE.search(plain)
     plain = _COVERAGE.sub("", plain) if cover else plain
+    plain = re.sub("[\N{GREEK SMALL LETTER DELTA}\N{INCREMENT}]", "delta ", plain)
     plain = re.sub(r"[\s_.\-:()\[\],]+", " ", plain).strip()
     if plain in _WORDS:
         return _WORDS[plain], 1.0
@@ -162,6 +166,11 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
             if prefix == "u95 " or (prefix == "s" and cover):
                 return f"s{axis}", 1.0 / (float(cover[1]) if cover else 2.0)
             return prefix + axis, 1.0
+    said = state_of(plain)
+    for prefix in ("", "measured ") if said else ():
+        match = _PATTERNS[prefix].fullmatch(said[1]) if said else None
+        if said and match:
+            return f"{said[0]} {next(found for found in match.groupdict().values() if found)}", 1.0
     if _TEMPERATURE.fullmatch(plain):
         return "temperature", 1.0
     return None

@@ -10,6 +10,7 @@ from typing import Any
 from sk120stiff.errors import InputError, require
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import Grid, is_number, with_points
+from sk120stiff.measurements.importers.header_rows import in_one_row
 from sk120stiff.measurements.importers.layout import layout_of
 
 _OLD = b"\xd0\xcf\x11\xe0"
@@ -57,7 +58,7 @@ def workbook_grid(source: Source) -> Grid:
                 remedy=f"There are {', '.join(sheets)}.",
             )
         return sheets[source.sheet]
-    fit = {n: g for n, g in sheets.items() if layout_of(replace(source, given=g)) is not None}
+    fit = {n: g for n, g in sheets.items() if _has_headers(replace(source, given=g))}
     fit = fit or {n: g for n, g in sheets.items() if any(map(_numbers, g.rows))}
     if len(fit) != 1:
         raise InputError(
@@ -70,12 +71,17 @@ def workbook_grid(source: Source) -> Grid:
     return replace(grid, left=others)
 
 
+def _has_headers(source: Source) -> bool:
+    return layout_of(in_one_row(source)) is not None
+
+
 def _numbers(row: tuple[str, ...]) -> bool:
     return sum(map(is_number, row)) > 2
 
 
 def _grid(source: Source, sheet: Any, formulas: Any) -> Grid:
     rows, lines = [], []
+    merged = _merged(sheet)
     for number, (cells, written) in enumerate(
         zip(sheet.iter_rows(values_only=True), formulas.iter_rows(values_only=True), strict=True), 1
     ):
@@ -86,13 +92,27 @@ def _grid(source: Source, sheet: Any, formulas: Any) -> Grid:
                     where=f"{source.path}, sheet {sheet.title}, line {number}",
                     remedy="Open the workbook in its program, save it, and try again.",
                 )
-        row = tuple(_text(cell) for cell in cells)
+        filled = (merged.get((number, k), cell) for k, cell in enumerate(cells, 1))
+        row = tuple(_text(cell) for cell in filled)
         if any(row):
             rows.append(row)
             lines.append(number)
     how = f"sheet {sheet.title} of an Excel workbook"
     grid = Grid(source.path, tuple(rows), tuple(lines), (), how, f"sheet {sheet.title}, ")
     return with_points(grid) if rows else grid
+
+
+def _merged(sheet: Any) -> dict[tuple[int, int], object]:
+    """Row and column → value of cells that are merged with one above: it holds for all of them.
+
+    What is merged across columns is a title or stands above several headers: its first column
+    alone is filled.
+    """
+    return {
+        (row, area.min_col): sheet.cell(area.min_row, area.min_col).value
+        for area in sheet.merged_cells.ranges
+        for row in range(area.min_row + 1, area.max_row + 1)
+    }
 
 
 def _text(value: object) -> str:

@@ -75,6 +75,21 @@ def test_a_force_from_its_size_and_its_direction(header: str, tmp_path: Path) ->
     assert not found.unused
 
 
+@pytest.mark.parametrize("names", ["ex;ey;ez", "n_x;n_y;n_z", "Richtung x;Richtung y;Richtung z"])
+def test_a_force_from_its_size_and_a_unit_vector(names: str, tmp_path: Path) -> None:
+    found = read(tmp_path, f"|F| / N;{names}", ["100;0,6;0;-0,8", "0;0;0;0"])
+    np.testing.assert_allclose(found.loads.wrench[:, :3], [[60, 0, -80], [0, 0, 0]])
+    assert not found.unused
+    assert any("times its direction" in said for said in found.said)
+    with pytest.raises(InputError, match="no unit vector"):
+        read(tmp_path, f"Kraft [N];{names}", ["100;0,6;0;-0,8", "50;30;0;40"])
+
+
+def test_the_first_column_of_a_matrix_is_no_direction(tmp_path: Path) -> None:
+    found = read(tmp_path, "Payload [kg];nx;ny;nz;ox;oy;oz;ax;ay;az", ["10;1;0;0;0;1;0;0;0;1"])
+    assert found.loads.payload is not None and not found.loads.wrench[:, :2].any()
+
+
 def test_axes_of_the_tool_and_a_unit_that_is_told(tmp_path: Path) -> None:
     rows = ["10;-Z", "-10;Y"]
     found = read(tmp_path, "Kraft;direction", rows, load="kN", forces="tool")

@@ -10,6 +10,7 @@ from sk120stiff.measurements.importers import FORMATS, Source
 from sk120stiff.measurements.importers.run import opened
 from sk120stiff.measurements.importers.several_markers import (
     of_marker,
+    refuse_one_marker_twice,
     refuse_several_points,
     with_places,
 )
@@ -128,3 +129,25 @@ def test_a_rotation_beside_a_position_is_no_second_marker(tmp_path: Path) -> Non
     path = tmp_path / "take.csv"
     path.write_text("Rotation,,,Position,,\nX,Y,Z,X,Y,Z\n1,2,3,4,5,6\n")
     assert opened(Source(path, SIX)).given is None
+
+
+@pytest.mark.parametrize("between", ["10.5", "250"])
+def test_two_markers_in_one_place_are_one(tmp_path: Path, between: str) -> None:
+    upper = "Pose,,,,,,,Force,,,0 kg,,,50 kg,,\n"
+    lower = ",q1,q2,q3,q4,q5,q6,Fx,Fy,Fz" + ",x,y,z" * 2 + "\n"
+    rows = [
+        f"{k},{','.join(str(10 * k + j) for j in range(6))},0,0,-500,10,{k},30,{between},{k},31\n"
+        for k in range(4)
+    ]
+    text = upper + lower + "".join(rows)
+    draft = draft_of(tmp_path, text, length="mm", angle="deg", load="N")
+    if between == "250":
+        refuse_one_marker_twice(draft)
+        return
+    with pytest.raises(InputError, match=r"one marker that was read twice.*x_unloaded"):
+        refuse_one_marker_twice(draft)
+
+
+def test_a_marker_of_number_zero_may_be_a_reading_without_load(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="x0, y0, z0 may be of one marker more"):
+        sheet_of(tmp_path, "q1,x0,y0,z0,x1,y1,z1\n1,2,3,4,5,6,7\n", ("joint_1",))
