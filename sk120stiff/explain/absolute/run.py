@@ -21,6 +21,7 @@ from sk120stiff.explain.absolute.accounts import (
 from sk120stiff.explain.absolute.advice import detectable, probabilities
 from sk120stiff.explain.absolute.balancer import balancer_for, balancing
 from sk120stiff.explain.absolute.candidates import linear_at
+from sk120stiff.explain.absolute.changed import changed
 from sk120stiff.explain.absolute.choose import (
     Chosen,
     alternatives,
@@ -139,6 +140,7 @@ def explain_positions(
             *pounds(final),
             *creeping(final, readings),
             *balancing(final),
+            *changed(final, options.seed),
         ),
     )
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)

@@ -45,23 +45,23 @@ def changes(
         load_cases: The N readings.
         places, drives: What may yield, in proportion to its load.
     """
-    cuts = tuple(_cuts(load_cases))
-    for cut in cuts:
+    found = tuple(cuts(load_cases))
+    for cut in found:
         step = cut.after[:, None, None]
         since = f"{YIELDS_SINCE}{cut.pose} on"
         for place in (*places, *drives):
             yield Suspect(
                 "change", f"{place.name}, under which it yields {since}", place.columns * step,
-                cut.clock, "reading", alike=len(cuts),
+                cut.clock, "reading", alike=len(found),
             )  # fmt: skip
         if len(drives) > 1:
             together = np.concatenate([each.columns for each in drives], axis=2) * step
             name = f"the torques of all joints, under which they yield {since}"
-            yield Suspect("change", name, together, cut.clock, "reading", alike=len(cuts))
+            yield Suspect("change", name, together, cut.clock, "reading", alike=len(found))
 
 
-def _cuts(load_cases: LoadCases) -> Iterator[Cut]:
-    """Poses that begin a second part, none of whose poses is in the first."""
+def cuts(load_cases: LoadCases, most: int = MOST) -> Iterator[Cut]:
+    """Poses that begin a second part, none of whose poses is in the first; `most`, spread evenly."""
     clock = _clock(load_cases)
     first = np.array(
         [clock[load_cases.pose == k].min(initial=np.inf) for k in range(len(load_cases.poses))]
@@ -73,8 +73,8 @@ def _cuts(load_cases: LoadCases) -> Iterator[Cut]:
     order = order[np.isfinite(first[order])]
     ended = np.maximum.accumulate(last[order])
     begins = [k for k in range(FEWEST, len(order) - FEWEST + 1) if ended[k - 1] < first[order[k]]]
-    if len(begins) > MOST:
-        begins = [begins[int(k)] for k in np.linspace(0, len(begins) - 1, MOST).round()]
+    if len(begins) > most:
+        begins = [begins[int(k)] for k in np.linspace(0, len(begins) - 1, most).round()]
     for k in begins:
         after = (clock >= first[order[k]]).astype(float)
         yield Cut(load_cases.poses[order[k]], after, clock)
