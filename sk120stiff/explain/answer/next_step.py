@@ -229,6 +229,10 @@ def _of_the_remainder(answer: Explanation) -> str:
     wishes = []
     if readings.repeat is None:
         wishes.append(REPEATS)
+    if readings.order is None and readings.time is None:
+        wishes.append(
+            "note the order of the readings (column order), without which no drift is sought"
+        )
     if readings.branch is None:
         wishes.append("take loads off in steps as they were put on, with a column branch")
     per_pose = readings.n_readings / max(len(readings.poses), 1)

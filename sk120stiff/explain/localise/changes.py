@@ -61,7 +61,7 @@ def changes(
 
 
 def cuts(load_cases: LoadCases, most: int = MOST) -> Iterator[Cut]:
-    """Poses that begin a second part, none of whose poses is in the first; `most`, spread evenly."""
+    """At most so many poses that begin a second part, none of whose poses is in the first."""
     clock = _clock(load_cases)
     first = np.array(
         [clock[load_cases.pose == k].min(initial=np.inf) for k in range(len(load_cases.poses))]
