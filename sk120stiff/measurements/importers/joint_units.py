@@ -1,4 +1,4 @@
-"""What speaks against the units of joint columns, where no positions check them."""
+"""What speaks against joint columns: units that no positions check, and cells that were merged."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.robot import Robot
 
+_SHARE = 0.25  # of the rows that are read, from which on rows without joints are told
 _WORDS = {"rad": "radians", "deg": "degrees"}
 
 
@@ -41,3 +42,20 @@ def unit_doubts(draft: Draft, robot: Robot) -> list[str]:
         said = f"{listed([names[k] for k in some])} {goes}"
         out.append(f"{said}: {looks}, and nothing here checks it. If so, {remedy}")
     return out
+
+
+def blank_doubts(draft: Draft) -> list[str]:
+    """A sentence where rows have readings and no joints, as merged cells leave them in text."""
+    joints = {column.header for column in draft.joints.taken}
+    without = [
+        line
+        for line, reason in draft.sheet.skipped
+        if joints and joints <= set(reason.rpartition("nothing stands in ")[2].split(", "))
+    ]
+    if len(without) < _SHARE * len(set(draft.sheet.lines)):
+        return []
+    return [
+        f"{len(without)} rows are left out because no joint value stands in them, as below merged "
+        "cells of a spreadsheet that was saved as text. If they are of the pose above them, fill "
+        "its cells down, or import the workbook (.xlsx) itself."
+    ]

@@ -25,7 +25,7 @@ from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.header_rows import in_one_row
 from sk120stiff.measurements.importers.holds import as_repeats
-from sk120stiff.measurements.importers.joint_units import unit_doubts
+from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
@@ -206,7 +206,12 @@ def import_readings(
         orientation=read if isinstance(read, Orientation) else None,
         differences=int(paired_rows.sum()),
         useful_poses=len({draft.pose[k] for k in np.flatnonzero(paired_rows)}),
-        doubts=(*laid.doubts, *doubts, *([] if laid.fitted else unit_doubts(draft, robot))),
+        doubts=(
+            *laid.doubts,
+            *doubts,
+            *([] if laid.fitted else unit_doubts(draft, robot)),
+            *blank_doubts(draft),
+        ),
         said=tuple(said),
     )
 

@@ -41,3 +41,14 @@ def test_degrees_among_radians_are_too(tmp_path: Path) -> None:
 
 def test_one_unit_is_not_doubted(tmp_path: Path) -> None:
     assert displaced(tmp_path, []).doubts == ()
+
+
+def test_rows_below_merged_cells_that_were_saved_as_text(tmp_path: Path) -> None:
+    lines = ["pose;q1;q2;q3;q4;q5;q6;Fz;dx;dy;dz"]
+    for k in range(4):
+        lines += [f"{k};{10 * k};20;30;40;50;60;-90;1;2;3", ";;;;;;;-50;0.5;1;1.5"]
+    path = tmp_path / "seen.csv"
+    path.write_text("\n".join(lines))
+    told = Told(length="mm", angle="deg", load="N")
+    (doubt,) = import_readings(path, load_robot(ur5(), tool="tool0"), told).doubts
+    assert doubt.startswith("4 rows are left out") and "workbook" in doubt
