@@ -47,6 +47,7 @@ class Answered:
     next_poses: Any = None
     next_pairs: tuple[Any, ...] = ()
     guess: Any = None
+    unnamed: tuple[str, ...] = ()
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
     slips: dict[int, str] = field(default_factory=dict)
 
@@ -64,7 +65,9 @@ class Answered:
 
     @property
     def final(self) -> Any:
-        readings = SimpleNamespace(repeat=None, branch=None, n_readings=100, poses=list("abcdefg"))
+        readings = SimpleNamespace(
+            repeat=None, branch=None, order=(1,), time=None, n_readings=100, poses=list("abcdefg")
+        )
         robot = SimpleNamespace(total_mass=0.0, gravity=np.zeros(3))
         return SimpleNamespace(
             problem=SimpleNamespace(measurements=readings), model=SimpleNamespace(robot=robot)
