@@ -179,6 +179,24 @@ OF_POSITIONS: tuple[Fault, ...] = (
         loads_left_as_they_are=("        if not both:", "        if True:"),
     ),
     *of(
+        "identify/absolute/not_named.py", *tests("absolute", "not_named"),
+        what_stands_fixed_set_to_zero=("- set(found.model.names)", "- {each.name for each in found.parameters}"),
+    ),
+    *of(
+        "explain/absolute/changed.py", *tests("absolute", "changed"),
+        a_change_of_nothing=("shares[best] < WORTH", "shares[best] < 1.0"),
+        a_change_in_any_order=("/ (1 + DRAWN) > CHANCE", "/ (1 + DRAWN) > 1.0"),
+    ),
+    *of(
+        "identify/absolute/words.py", *tests("absolute", "payload_place"),
+        weight_that_is_sure=("if said.payload[readings.use].any():", "if True:"),
+    ),
+    *of(
+        "identify/absolute/remainder.py", *tests("absolute", "remainder"),
+        a_gap_that_is_all_noise=("return 0.0, gap, 1.0", "return 0.0, 0.0, 1.0"),
+        repeats_that_tell_no_noise=("gap**2 - again.sigma**2", "gap**2"),
+    ),
+    *of(
         "measurements/importers/masses.py", *tests("measurements/importers", "masses"),
         grams_taken_for_kilograms=('"g": 1e-3', '"g": 1.0'),
         any_word_a_mass=("elif len(heavy) == 1:", "elif False:"),

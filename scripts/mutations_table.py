@@ -208,6 +208,21 @@ FAULTS: tuple[Fault, ...] = (
         named_effects_explain_what_the_base_does=("signature - base @ (base.T @ signature)", "signature"),
     ),
     *of(
+        "explain/judge/adequacy.py", *tests("explain", "noise"),
+        noise_of_readings_told_by_their_scatter_alone=("found.inflation_gain > found.gain + LIKELIER", "False"),
+        one_reading_a_pose_is_noise=("    if scatter(fit) is not None:\n        return True", "    return True"),
+    ),
+    *of(
+        "explain/localise/changes.py", *tests("explain", "changes"),
+        a_change_before_its_pose=("(clock >= first[order[k]])", "(clock < first[order[k]])"),
+        a_pose_in_both_parts=("if ended[k - 1] < first[order[k]]", "if ended[k - 1] < np.inf"),
+        rows_that_stand_in_any_order=("return np.asarray(since + zero, dtype=float)", "break"),
+    ),
+    *of(
+        "identify/solve/problem.py", *tests("identify", "unseen"),
+        a_spring_that_does_not_show_is_measured=("* usual < 1.0:", "* usual < 0.0:"),
+    ),
+    *of(
         "explain/judge/confirm.py", *tests("explain", "evidence"),
         confirmation_folds_that_leak=("weigh((fold != k).astype(float))", "weigh(np.ones(regression.poses))"),
         last_confirmation_fold_never_scored=(

@@ -118,7 +118,8 @@ def _of_the_gap(final: Calibration) -> Size:
         return 0.0, gap, 1.0
     best = float(np.sqrt(max(gap**2 - again.sigma**2, 0.0)))
     chance = float(stats.f.sf((gap / again.sigma) ** 2, freedom, again.freedom))
-    return best, max(best, gap / float(np.sqrt(again.freedom))), chance
+    error = gap**2 * float(np.sqrt(2.0 / freedom + 2.0 / again.freedom))  # of gap² − σ², one σ
+    return best, float(np.sqrt(best**2 + error)), chance
 
 
 def remainder_entry(final: Calibration) -> dict[str, Any]:
