@@ -220,7 +220,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "identify/solve/problem.py", *tests("identify", "unseen"),
-        a_spring_that_does_not_show_is_measured=("* usual < 1.0:", "* usual < 0.0:"),
+        a_spring_that_does_not_show_is_measured=("plausible < 1.0:", "plausible < 0.0:"),
     ),
     *of(
         "explain/judge/confirm.py", *tests("explain", "evidence"),

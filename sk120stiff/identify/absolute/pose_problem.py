@@ -190,10 +190,15 @@ class PoseProblem(Problem):
         return self.of_channels
 
     @cached_property
-    def span(self) -> Array:
+    def plausible(self) -> Array:
         """(P_free,) sizes in scaled units beyond which a value is implausible."""
         sizes = [self.reach(self.model.parameters[k]) for k in self.free]
         return np.array(sizes) / self.scale
+
+    @property
+    def span(self) -> Array:
+        """See `Problem.span`: what is plausible."""
+        return self.plausible
 
     def reach(self, parameter: Parameter) -> float:
         """Size beyond which a value is implausible; a marker that is fitted may sit anywhere."""

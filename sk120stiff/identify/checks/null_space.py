@@ -227,7 +227,7 @@ def _unseen(fit: Fit, group: Sequence[int], size: int) -> str:
     if len(group) == 1:
         why = why_unseen(fit.problem.load_cases, parameters[0])
         if not why and parameters[0].effect.joint_spring:
-            why = "no usual value would change them by as much as their noise"
+            why = "however soft it was, no load turns it by as much as their noise"
         return f"{parameters[0].name} does not show in these readings: " + (
             f"{why}." if why else "no plausible value would change them by a tenth of their noise."
         )

@@ -102,11 +102,14 @@ class Problem:
     def span(self) -> Array:
         """(P_free,) sizes in scaled units over which a change has to show, see `seen_directions`.
 
-        What is plausible. Of a joint's spring whose standard size before anything is read shows by
-        less than the noise, all others known, it is so little that nothing shows: every joint has a
-        spring, and what a floor that tips lets such a load tell of it is no measurement.
+        What is plausible. Of a joint's spring that no load turns, to first order, it is so little
+        that nothing shows: however soft it was, it would move nothing by as much as the noise, and
+        what a floor that tips lets such a load tell of it is no measurement. Where nobody knows the
+        noise it is no yardstick of that.
         """
         out = self.plausible.copy()
+        if not self.noise.known:
+            return out
         cases, robot = self.load_cases, self.model.robot
         torque = cases.nominal.at(cases.force_point).torques(cases.wrench)
         columns = cases.nominal.linear_jacobian * torque[:, None, :]  # (N, 3, n), base axes
@@ -115,9 +118,9 @@ class Problem:
         for place, k in enumerate(self.free):
             parameter = self.model.parameters[k]
             if parameter.effect.joint_spring:
-                usual = parameter.spec.usual
-                if shows[robot.actuated.index(parameter.effect.where)] * usual < 1.0:
-                    out[place] = FAINTEST * usual / self.scale[place]
+                turned = shows[robot.actuated.index(parameter.effect.where)]
+                if turned * parameter.spec.plausible < 1.0:
+                    out[place] = FAINTEST * parameter.spec.usual / self.scale[place]
         return out
 
     @cached_property

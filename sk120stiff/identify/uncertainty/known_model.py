@@ -59,7 +59,8 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     per_noise = (V / singular) * size[:, None]
     covariance = fit.unit**2 * per_noise @ per_noise.T
     covariance = covariance + _beside_noise(fit, covariance)
-    unseen = np.where(lost[:, None], null * size[:, None], 0.0).T
+    whole = (null**2).T @ (problem.plausible / span)  # a change that does not show is plausible
+    unseen = np.where(lost[:, None], null * size[:, None] * whole, 0.0).T
     nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
     covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
     return Uncertainty(
