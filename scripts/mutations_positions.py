@@ -193,8 +193,8 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "identify/absolute/remainder.py", *tests("absolute", "remainder"),
-        a_gap_that_is_all_noise=("return 0.0, gap, 1.0", "return 0.0, 0.0, 1.0"),
-        repeats_that_tell_no_noise=("gap**2 - again.sigma**2", "gap**2"),
+        a_gap_that_is_all_noise=("return 0.0, float(np.sqrt(square / freedom)), 1.0", "return 0.0, 0.0, 1.0"),
+        repeats_that_tell_no_noise=("square - again.freedom * pure", "square"),
     ),
     *of(
         "measurements/importers/masses.py", *tests("measurements/importers", "masses"),

@@ -216,7 +216,7 @@ FAULTS: tuple[Fault, ...] = (
         "explain/localise/changes.py", *tests("explain", "changes"),
         a_change_before_its_pose=("(clock >= first[order[k]])", "(clock < first[order[k]])"),
         a_pose_in_both_parts=("if ended[k - 1] < first[order[k]]", "if ended[k - 1] < np.inf"),
-        rows_that_stand_in_any_order=("return np.asarray(since + zero, dtype=float)", "break"),
+        rows_that_stand_in_any_order=("since if zero is None else since + zero, dtype", "np.arange(load_cases.count), dtype"),
     ),
     *of(
         "identify/solve/problem.py", *tests("identify", "unseen"),

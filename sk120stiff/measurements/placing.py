@@ -289,8 +289,8 @@ def _say_if_it_hangs(cloud: Cloud, readings: Measurements) -> list[str]:
     return [
         "These positions put the base upside down against their z axis, and the arm fits them as "
         f"well upright: with {first} of the other sign and {second} half a turn on. If z is up and "
-        "the arm hangs from no ceiling, the joint columns have that other convention; else state "
-        "gravity in the YAML file."
+        "the arm hangs from no ceiling, the joint columns have that other convention. If z points "
+        "down, nothing is to be done; if the arm hangs, state gravity in the YAML file."
     ]
 
 

@@ -43,6 +43,15 @@ def test_the_pose_from_which_on_springs_are_others_is_told(tmp_path: Path) -> No
     assert "positions of two arms" in said
 
 
+def test_a_column_order_says_in_which_order_rows_were_read(tmp_path: Path) -> None:
+    path = two_arms(tmp_path, 1.5)
+    head, *rows = path.read_text().splitlines()
+    mixed = [f"{rows[k]},{k},p{k}" for k in np.random.default_rng(2).permutation(60)]
+    path.write_text("\n".join([f"{head},order,pose", *mixed]) + "\n")
+    (said,) = [n for n in explained(path).final.notes if n.startswith("The springs are others")]
+    assert f"from pose p{ROW} on than before" in said
+
+
 def test_springs_that_stay_the_same_are_not_told_to_change(tmp_path: Path) -> None:
     final = explained(two_arms(tmp_path, 1.0)).final
     assert not any("springs are others" in note for note in final.notes)

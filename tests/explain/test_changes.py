@@ -1,13 +1,14 @@
 """An arm that became another one while it was measured: the pose from which on, and what."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import localise
-from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.next_step import _of_a_change, next_step
 from sk120stiff.explain.localise.changes import changed_at, changes
 from sk120stiff.explain.localise.drives import drives
 from sk120stiff.measurements import Measurements
@@ -81,3 +82,7 @@ def test_the_answer_says_to_explain_both_parts_each_by_itself() -> None:
     assert WHAT in said
     assert "before pose 9 was read" in next_step(answer)
     assert "readings of two arms" in next_step(answer)
+    bare = replace(answer.final.problem.measurements, order=None, zero_order=None)
+    problem = SimpleNamespace(measurements=bare, model=answer.final.problem.model)
+    final = SimpleNamespace(problem=problem, model=answer.final.model)
+    assert "In the order in which rows stand" in _of_a_change(SimpleNamespace(final=final), "9")

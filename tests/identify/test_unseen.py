@@ -124,3 +124,16 @@ def test_a_spring_that_a_tipping_base_shows_by_less_than_the_noise_is_not_measur
     assert found.model.parameter(name).internal == pytest.approx(start.internal)
     told = {p.name: p for p in found.parameters}[f"{rocking.id}.stiffness_y"]
     assert abs(told.internal - 2e-6) < 3.0 * (told.internal_std or 0.0)
+
+
+def test_a_loose_joint_that_loads_turn_is_measured_however_soft() -> None:
+    robot, point = load_robot(example("panda.urdf")), np.array([0.1, 0.0, 0.05])
+    readings = pushed(point)
+    wrench = 0.02 * readings.wrench
+    load_cases = load_case(robot, readings.joints, wrench, point=point, force_point=point)
+    loose = joint_spring_model(robot, np.where(np.arange(7) < 6, SPRINGS, 120.0))
+    noise = np.random.default_rng(5).normal(0.0, 1.4e-5, (20, 3))
+    faint = replace(readings, wrench=wrench, displacement=loose.predict(load_cases) + noise)
+    found = fit(joint_spring_model(robot), faint)
+    told = found.model.parameter("joint_springs:panda_joint7.stiffness")
+    assert told.value == pytest.approx(120.0, rel=0.2)

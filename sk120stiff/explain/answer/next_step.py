@@ -47,7 +47,7 @@ def _of_the_beyond(answer: Explanation) -> list[str]:
     name = said.partition(f" {MORE_THAN_ALL}")[0]
     how = STATED.get(name.partition(":")[0], "check units and what was stated of arm and tool")
     return [
-        f"Before all else: {name} would explain more than what is named, at a size beyond belief; "
+        f"Before all else: {name} would explain more than anything else, at a size beyond belief; "
         f"{how}. If it is so, run this again with --assume {name}."
     ]
 
@@ -126,6 +126,12 @@ def told_apart(answer: Explanation) -> str:
 
 def _outside(answer: Explanation) -> list[str]:
     said = ["Trust the springs no farther than the gap that is left."]
+    if answer.adequacy.undecided:
+        return [
+            *said,
+            f"{REPEATS[0].upper()}{REPEATS[1:]}: if they scatter as much, σ was stated too small, "
+            "and the model may be used as it is.",
+        ]
     if answer.guess is not None:
         said.append(
             "best_guess.yaml foretells other poses best; use it at most where poses and loads are "
@@ -193,7 +199,16 @@ def _largest(answer: Explanation) -> list[str]:
     ]
 
 
-def _of_a_change(pose: str) -> str:
+def _of_a_change(answer: Explanation, pose: str) -> str:
+    readings = answer.final.problem.measurements
+    if readings.order is None and readings.time is None:
+        return (
+            f"In the order in which rows stand something changed before pose {pose}. If they were "
+            "read in that order, find out what came loose, was tightened or let go there, or "
+            f"whether readings of two arms stand in one file, and run this on the poses before "
+            f"{pose} and on those from {pose} on, each by themselves (column use: 0 leaves a row "
+            "out). If not, write the column order, and run this again."
+        )
     return (
         f"Find out what changed before pose {pose} was read: what came loose there, was tightened "
         "or let go, or whether readings of two arms stand in one file. Then run this on the poses "
@@ -211,7 +226,7 @@ def _of_the_remainder(answer: Explanation) -> str:
             "keep sun, draughts and air conditioning from arm and instrument."
         )
     if place is not None and (since := changed_at(place)):
-        return _of_a_change(since)
+        return _of_a_change(answer, since)
     if place is not None:
         return (
             f"The rest goes with {place}, and beside that only noise is left: look there, and read "
@@ -219,7 +234,7 @@ def _of_the_remainder(answer: Explanation) -> str:
         )
     most = mostly_accounted(answer)
     if most is not None and (since := changed_at(most)):
-        return _of_a_change(since)
+        return _of_a_change(answer, since)
     if most is not None:
         return (
             f"Most of the rest goes with {most}: look there first, and read at more poses and "

@@ -91,6 +91,6 @@ def _clock(load_cases: LoadCases) -> Array:
         (load_cases.order, load_cases.order_at_zero),
         (load_cases.time, load_cases.time_at_zero),
     ):
-        if since is not None and zero is not None:
-            return np.asarray(since + zero, dtype=float)
+        if since is not None and (zero is not None or load_cases.absolute):
+            return np.asarray(since if zero is None else since + zero, dtype=float)
     return np.arange(load_cases.count, dtype=float)

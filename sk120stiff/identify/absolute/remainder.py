@@ -14,6 +14,7 @@ from sk120stiff.model.uncertainty import Remainder
 
 LEVEL = 0.01  # probability of noise alone below which what is left is significant
 ENDS = (0.975, 0.025)  # of an interval that holds 95 %
+ONE_ERROR = 0.16  # probability of less, one standard error below
 
 Size = tuple[float, float, float]  # best value and 95 % interval
 
@@ -111,15 +112,23 @@ def remainder_at_other_poses(final: Calibration) -> Remainder | None:
 
 
 def _of_the_gap(final: Calibration) -> Size:
-    """Rms of the gap per axis beyond the noise and its upper limit [m], and the chance of noise."""
-    numbers, freedom = len(final.problem.rows), final.degrees_of_freedom
-    gap, again = final.rms * float(np.sqrt(numbers / freedom)), pure_error(final)
-    if again is None:
-        return 0.0, gap, 1.0
-    best = float(np.sqrt(max(gap**2 - again.sigma**2, 0.0)))
-    chance = float(stats.f.sf((gap / again.sigma) ** 2, freedom, again.freedom))
-    error = gap**2 * float(np.sqrt(2.0 / freedom + 2.0 / again.freedom))  # of gap² − σ², one σ
-    return best, float(np.sqrt(best**2 + error)), chance
+    """Rms beyond the noise per axis and its upper limit [m], and the chance of noise.
+
+    The lack-of-fit test (Draper & Smith 1998, ch. 2): what the gap holds beyond the pure error of
+    repeats, over that error. Numbers that were read m times err by what is missing all alike.
+    """
+    numbers, freedom, again = len(final.problem.rows), final.degrees_of_freedom, pure_error(final)
+    square = numbers * final.rms**2
+    if again is None or freedom <= again.freedom:
+        return 0.0, float(np.sqrt(square / freedom)), 1.0
+    pure, others = again.sigma**2, freedom - again.freedom
+    ratio = max(square - again.freedom * pure, 0.0) / others / pure
+    times = numbers / (numbers - again.freedom)
+    least = float(stats.f.ppf(ONE_ERROR, others, again.freedom))
+    best, more = (
+        float(np.sqrt(pure * max(each - 1.0, 0.0) / times)) for each in (ratio, ratio / least)
+    )
+    return best, more, float(stats.f.sf(ratio, others, again.freedom))
 
 
 def remainder_entry(final: Calibration) -> dict[str, Any]:

@@ -147,7 +147,10 @@ def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
     Raises:
         InputError: A vector that is no unit vector in a row with load.
     """
-    plain = [re.sub(r"[\s_.]+", " ", unit_of_header(c.header)[0]).lower() for c in sheet.spare]
+    plain = [  # a direction has no unit: ex [mm] is an error of position
+        "" if unit_of_header(c.header)[1] else re.sub(r"[\s_.]+", " ", c.header).lower()
+        for c in sheet.spare
+    ]
     for form in _VECTORS:
         names = [form.format(axis) for axis in "xyz"]
         of_matrix = form[0] == "n" and bool({"ox", "o x"} & set(plain))
@@ -160,6 +163,8 @@ def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
     if size is None or any(sheet.get(name) for name in FORCES):
         return sheet
     values, _, unit, stated = _as_force(sheet, size, told)
+    if unit == "SI":  # a mass pulls down, whatever stands beside it
+        return sheet
     e = np.column_stack([numbers(sheet, column) for column in along])
     off = (np.abs(np.linalg.norm(e, axis=1) - 1.0) > _UNIT_LENGTH) & (np.array(values) != 0.0)
     if off.any():

@@ -12,7 +12,8 @@ from sk120stiff.measurements.importers.contract import Sheet
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Told
 
-APART = 0.01  # m; no arm comes back to a pose so far off, and two markers sit no nearer
+RIGID = 0.1  # of their distance, by which that of two markers on one tool may scatter
+APART = 0.01  # m; no arm comes back to a pose so far off
 FEWEST = 3  # readings of both of two markers that tell whether they are one
 MOST = 0.5  # share of the readings repeated that lie apart, from which on that is no slip
 
@@ -141,7 +142,8 @@ def refuse_one_marker_twice(draft: Draft) -> None:
     for one, two in combinations(names, 2):
         both = [(seen[one][at], seen[two][at]) for at in seen[one] if at in seen[two]]
         apart = [float(np.linalg.norm(draft.measured[a] - draft.measured[b])) for a, b in both]
-        if len(apart) >= FEWEST and np.median(apart) < APART:
+        rigid = bool(apart) and np.std(apart) < RIGID * np.mean(apart)  # two on one tool stay apart
+        if len(apart) >= FEWEST and np.median(apart) < APART and not rigid:
             raise InputError(
                 f"the markers {one} and {two} are {1e3 * float(np.median(apart)):.2g} mm apart in "
                 "the median, at the same poses under the same load: they are one marker that was "

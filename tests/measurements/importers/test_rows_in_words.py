@@ -90,6 +90,13 @@ def test_the_first_column_of_a_matrix_is_no_direction(tmp_path: Path) -> None:
     assert found.loads.payload is not None and not found.loads.wrench[:, :2].any()
 
 
+@pytest.mark.parametrize("names", ["nx;ny;nz", "ex [mm];ey [mm];ez [mm]"])
+def test_a_mass_pulls_down_whatever_normal_stands_beside_it(names: str, tmp_path: Path) -> None:
+    found = read(tmp_path, f"Payload [kg];{names}", ["10;0;0;1", "0;0;0;1"])
+    assert found.loads.payload is not None
+    np.testing.assert_allclose(found.loads.wrench[:, 2], [-98.0665, 0.0])
+
+
 def test_axes_of_the_tool_and_a_unit_that_is_told(tmp_path: Path) -> None:
     rows = ["10;-Z", "-10;Y"]
     found = read(tmp_path, "Kraft;direction", rows, load="kN", forces="tool")
