@@ -12,6 +12,7 @@ from sk120stiff.explain.answer.next_step import _of_a_change, next_step
 from sk120stiff.explain.localise.changes import changed_at, changes
 from sk120stiff.explain.localise.drives import drives
 from sk120stiff.measurements import Measurements
+from sk120stiff.show.stories.verdicts import lead_of
 from tests.explain.readings import answered, base_fit, hidden
 
 LOOSE = "joint_2_l"  # from the pose on at which it is softer
@@ -82,6 +83,7 @@ def test_the_answer_says_to_explain_both_parts_each_by_itself() -> None:
     assert WHAT in said
     assert "before pose 9 was read" in next_step(answer)
     assert "readings of two arms" in next_step(answer)
+    assert "Something is missing, and it came before pose 9: the gap goes with" in lead_of(answer)
     bare = replace(answer.final.problem.measurements, order=None, zero_order=None)
     problem = SimpleNamespace(measurements=bare, model=answer.final.problem.model)
     final = SimpleNamespace(problem=problem, model=answer.final.model)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
+from sk120stiff.explain.answer.words import accounted, mostly_accounted
 from sk120stiff.explain.findings import likely
+from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.show.wording import chance, counted, um
 
 FEW_POSES = 8  # below this other poses confirm little
@@ -100,8 +102,11 @@ def _outside(answer: Explanation) -> str:
             "noisier than stated or something is missing: it has no structure. The model misses "
             f"the readings by {um(step.fit_rms)} µm rms per axis; {noise_makes(answer)}."
         )
+    place = accounted(answer) or mostly_accounted(answer) or ""
     why = "no effect of the catalogue explains it"
-    if answer.unnamed:
+    if since := changed_at(place):
+        why = f"it came before pose {since}: the gap goes with {place}"
+    elif answer.unnamed:
         why = "no name for it is confirmed by other poses"
         poses = len(answer.base.problem.load_cases.poses)
         if poses < FEW_POSES:
