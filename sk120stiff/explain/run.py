@@ -184,6 +184,7 @@ def explain_displacements(
             *held_rigid(final),
             *_where_it_binds(found, options),
         ),
+        beyond=None if beyond is None else beyond.id,
         limits=options.limits,
         suspects=suspects,
         guess=guess,

@@ -8,7 +8,6 @@ import pytest
 from sk120stiff import Model, base_model, load_robot
 from sk120stiff.explain import Explanation, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
-from sk120stiff.explain.judge.implausible import MORE_THAN_ALL
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.identify.checks.yardstick import scatter
 from sk120stiff.measurements import NoiseStatement
@@ -153,8 +152,7 @@ def test_a_gap_of_rounding_is_nothing(springs):
 
 
 def test_what_explains_most_beyond_belief_is_what_to_look_at_first(halved):
-    said = (f"force_point:sensor {MORE_THAN_ALL}, but by offset_z = 0.229 m, ...",)
-    first = next_step(replace(halved, unnamed=said))
+    first = next_step(replace(halved, beyond="force_point:sensor"))
     assert first.startswith("Before all else: force_point:sensor")
     assert "write force: {point: ...}" in first and "--assume force_point:sensor" in first
     assert "Before all else" not in next_step(halved)

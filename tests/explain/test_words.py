@@ -47,7 +47,7 @@ class Answered:
     next_poses: Any = None
     next_pairs: tuple[Any, ...] = ()
     guess: Any = None
-    unnamed: tuple[str, ...] = ()
+    beyond: str | None = None
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
     slips: dict[int, str] = field(default_factory=dict)
 

@@ -44,6 +44,7 @@ class Explanation:
         adequacy: Tests of what the final model leaves over.
         remainder: Its size, as model-form error beside the noise.
         unnamed: What fitted but is not named, and why, in sentences.
+        beyond: What would explain by far the most, were its size to be believed; None: nothing.
         limits: How the user limited the search, in sentences; empty if not at all.
         where: Plain statements on where the gap of the base model lives.
         suspects: For verdict ``outside``: what comes nearest.
@@ -79,6 +80,7 @@ class Explanation:
     adequacy: Adequacy
     remainder: Remainder
     unnamed: tuple[str, ...] = ()
+    beyond: str | None = None
     limits: tuple[str, ...] = ()
     where: tuple[str, ...] = ()
     suspects: tuple[Contender, ...] = ()

@@ -10,7 +10,6 @@ from sk120stiff.data_checks import place_of
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
-from sk120stiff.explain.judge.implausible import MORE_THAN_ALL
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import TO_AND_FRO
 from sk120stiff.explain.localise.words import microns
@@ -41,10 +40,9 @@ def next_step(answer: Explanation) -> str:
 
 def _of_the_beyond(answer: Explanation) -> list[str]:
     """What explains by far the most at a size beyond belief comes before all that is believed."""
-    said = next((each for each in answer.unnamed if MORE_THAN_ALL in each), None)
-    if said is None:
+    name = answer.beyond
+    if name is None:
         return []
-    name = said.partition(f" {MORE_THAN_ALL}")[0]
     how = STATED.get(name.partition(":")[0], "check units and what was stated of arm and tool")
     return [
         f"Before all else: {name} would explain more than anything else, at a size beyond belief; "

@@ -132,9 +132,11 @@ def adequacy(fit: Fit, named: Collection[str]) -> Adequacy:
     if noise.source == "stated" and whole is not None and whole.probability < LEVEL:
         free, closest = _structure(fit, _free(fit))
         free |= unlike_scatter(fit)
-        if _nothing_structured(fit, free, whole.factor):
-            return _judged(free, size / whole.factor, whole, closest, whole.factor)
-        undecided = not _reading_by_reading(fit) and _bare(free, whole.factor)
+        if _bare(free, whole.factor):
+            told = whole.factor < WITHOUT_SCATTER or _reading_by_reading(fit)
+            if told and whole.factor < FOUND:
+                return _judged(free, size / whole.factor, whole, closest, whole.factor)
+            undecided = not told
     tests, closest = _structure(fit, noise)
     if whole is not None:
         taken = whole.freedom[0]
@@ -170,12 +172,6 @@ def _free(fit: Fit) -> Yardstick:
     """The noise as the readings scatter, whatever was stated."""
     found = scatter(fit)
     return found or Yardstick("unknown", fit.noise_factor**2, 0.0, None, None)
-
-
-def _nothing_structured(fit: Fit, tests: Tests, factor: float) -> bool:
-    if factor >= (FOUND if _reading_by_reading(fit) else WITHOUT_SCATTER):
-        return False
-    return _bare(tests, factor)
 
 
 def _reading_by_reading(fit: Fit) -> bool:

@@ -16,7 +16,6 @@ from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.explain.select.stepwise import Selection
 
-MORE_THAN_ALL = "would explain more than anything believable"
 DECISIVE = 10.0  # difference of scores (BIC: Kass & Raftery 1995) that is worth a sentence
 
 
@@ -61,7 +60,7 @@ def _told(regression: Regression, effect: int, model: Scored) -> str:
     limit = abs(spec.public(limits[column] * spec.typical))
     bound = "softer than" if spec.reciprocal else "beyond"
     return (
-        f"{law.id} {MORE_THAN_ALL}, but by {spec.name} = "
+        f"{law.id} would explain more than anything believable, but by {spec.name} = "
         f"{value:.3g} {spec.unit}, {bound} what is believed of an arm of this size "
         f"({limit:.3g} {spec.unit}). Check the units and what was stated of arm and tool; if it is "
         f"so, take it for granted with --assume {law.id}."
