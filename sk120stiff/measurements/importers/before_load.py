@@ -47,13 +47,7 @@ def with_before(sheet: Sheet, before: Sheet, told: Told) -> Sheet:
     whole = paired(pushed, _labelled(apart), "positions without load")
     _refuse_the_same(whole, before)
     whole = _with_joints_once(whole, told)
-    free = [c.cells for axis in POSITIONS if (c := whole.get(f"{WITHOUT} {axis}"))]
-    own = len(set(zip(*free, strict=True))) == len(whole.lines)
-    said = f"The positions of {sheet.path.name} are under load. " + (
-        "Every row has a zero reading of its own (displacement: {zero: separate})."
-        if own
-        else "Rows of one pose share a zero reading (displacement: {zero: shared})."
-    )
+    said = f"The positions of {sheet.path.name} are under load."
     if told.wrench is not None and not any(whole.get(name) for name in LOADS):
         count = Column("--wrench", "load", None, "", ("1",) * len(whole.lines))
         whole = replace(whole, columns=(*whole.columns, count))
@@ -61,7 +55,6 @@ def with_before(sheet: Sheet, before: Sheet, told: Told) -> Sheet:
         whole,
         title=f"{sheet.title}, with {before.path.name}",
         notes=(*whole.notes, said),
-        zero="separate" if own else "shared",
     )
 
 

@@ -20,6 +20,8 @@ _OF_ONE = ("order", "time")  # of two readings, which one it was is not said
 def unfolded(sheet: Sheet) -> Sheet:
     """The sheet with a row without load before each row under load, N → 2 N.
 
+    Where no two rows have the same reading without load, each has one of its own.
+
     A sheet without columns of both kinds comes back as it is.
 
     Raises:
@@ -62,6 +64,8 @@ def unfolded(sheet: Sheet) -> Sheet:
         header = f"{free.header}, {pushed.header}"
         cells = _woven(free.cells, pushed.cells)
         columns.append(replace(free, header=header, meaning=axis, cells=cells))
+    free_cells = [c.cells for axis in POSITIONS if (c := sheet.get(f"{WITHOUT} {axis}"))]
+    own = len(set(zip(*free_cells, strict=True))) == len(sheet.lines)
     left = tuple(
         f"column {c.header}: one for two readings" for c in sheet.columns if c.meaning in _OF_ONE
     )
@@ -75,8 +79,14 @@ def unfolded(sheet: Sheet) -> Sheet:
         unused=(*sheet.unused, *left),
         notes=(
             *sheet.notes,
-            "Each row is two readings, without load and with the load that it states.",
+            "Each row is two readings, without load and with the load that it states. "
+            + (
+                "Every row has a zero reading of its own (displacement: {zero: separate})."
+                if own
+                else "Rows of one pose share a zero reading (displacement: {zero: shared})."
+            ),
         ),
+        zero="separate" if own else "shared",
     )
 
 

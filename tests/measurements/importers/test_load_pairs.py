@@ -25,6 +25,14 @@ def test_a_row_is_a_reading_without_load_and_one_with_it(tmp_path: Path) -> None
     assert any("two readings" in note for note in found.notes)
 
 
+def test_rows_that_repeat_the_reading_without_load_share_it(tmp_path: Path) -> None:
+    found = unfolded(sheet_of(tmp_path, PAIRS + ROWS))
+    assert found.zero == "separate" and any("of its own" in note for note in found.notes)
+    again = "a,0.1,1,2,3,1.9,2.9,3.9,15,25,35,3\n"
+    found = unfolded(sheet_of(tmp_path, PAIRS + ROWS + again))
+    assert found.zero == "shared" and any("share a zero reading" in note for note in found.notes)
+
+
 @pytest.mark.parametrize(
     ("header", "words"),
     [
