@@ -208,6 +208,15 @@ def test_coverage_reads_intervals(tmp_path: Path) -> None:
     answer = read_answer(tmp_path)
     assert coverage(truth("L1", TILT), answer, 1.0) == ([True], [False])
     assert coverage(truth("L1", TILT), answer, 0.5) == ([], [])
+    (tmp_path / "model.yaml").write_text(
+        "effects:\n- name: joint_springs\n  where: joint_2_l\n  parameters:\n"
+        "    stiffness: {value: .inf, unit: N*m/rad, std: null}\n"
+    )
+    rigid = read_answer(tmp_path)
+    assert coverage(truth("L1", TILT), rigid, 1.0) == ([True], [False]), (
+        "a gear that was made rigid"
+    )
+    assert coverage(truth("L11", TILT), rigid, 1.0) == ([True], []), "not named from positions"
 
 
 @pytest.mark.parametrize(
