@@ -46,6 +46,7 @@ def changes(
         places, drives: What may yield, in proportion to its load.
     """
     found = tuple(cuts(load_cases))
+    efforts = "torques and forces" if any(load_cases.robot.prismatic) else "torques"
     for cut in found:
         step = cut.after[:, None, None]
         since = f"{YIELDS_SINCE}{cut.pose} on"
@@ -56,7 +57,7 @@ def changes(
             )  # fmt: skip
         if len(drives) > 1:
             together = np.concatenate([each.columns for each in drives], axis=2) * step
-            name = f"the torques of all joints, under which they yield {since}"
+            name = f"the {efforts} of all joints, under which they yield {since}"
             yield Suspect("change", name, together, cut.clock, "reading", alike=len(found))
 
 

@@ -221,8 +221,9 @@ def _by_weight(found: Calibration, readings: Measurements) -> list[str]:
     return [
         "Nothing but the arm's own weight bends it here, so springs are as right as its masses in "
         f"the URDF ({found.model.robot.total_mass:.3g} kg) and as it has no balancer that the URDF "
-        "does not know: of masses 10 % too small every spring is 10 % too soft, and no ± here "
-        "knows of it. Positions with a known payload beside those without tell."
+        "does not know: where these masses are 10 % too small every spring comes out 10 % too "
+        "soft, and no ± here knows of it. Positions with a known payload beside those without it "
+        "would tell."
     ]
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.load_pairs import LOADS, POSITIONS, WITH, WITHOUT
+from sk120stiff.measurements.importers.load_pairs import LOADS, POSITIONS
+from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
 from sk120stiff.measurements.importers.pairing import label_of, paired
 from sk120stiff.measurements.importers.told import Told, numbers
 

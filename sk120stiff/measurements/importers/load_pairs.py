@@ -8,11 +8,11 @@ from typing import TypeVar
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
 
 T = TypeVar("T")
 
 POSITIONS = ("x", "y", "z")
-WITHOUT, WITH = "unloaded", "loaded"
 LOADS = ("fx", "fy", "fz", "mx", "my", "mz", "payload", "load")
 _OF_ONE = ("order", "time")  # of two readings, which one it was is not said
 
