@@ -34,18 +34,18 @@ def next_step(answer: Explanation) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
     return " ".join(
-        [*_of_the_beyond(answer), *said[answer.verdict](answer), *_of_the_slips(answer)]
+        [*said[answer.verdict](answer), *_of_the_beyond(answer), *_of_the_slips(answer)]
     )
 
 
 def _of_the_beyond(answer: Explanation) -> list[str]:
-    """What explains by far the most at a size beyond belief comes before all that is believed."""
+    """What would explain by far the most of the rest, at a size beyond belief."""
     name = answer.beyond
     if name is None:
         return []
     how = STATED.get(name.partition(":")[0], "check units and what was stated of arm and tool")
     return [
-        f"Before all else: {name} would explain more than anything else, at a size beyond belief; "
+        f"Of all that could be added {name} would explain the most, at a size beyond belief: "
         f"{how}. If it is so, run this again with --assume {name}."
     ]
 

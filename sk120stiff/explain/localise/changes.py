@@ -17,6 +17,7 @@ from sk120stiff.effects import LoadCases
 from sk120stiff.explain.localise.suspect import Suspect
 
 FEWEST = 2  # poses on either side of a change
+LEAST = 3  # readings there; what fewer say is those poses' own
 MOST = 24  # poses at which one is looked for, spread evenly
 YIELDS_SINCE = "otherwise from pose "  # before the label of the first pose of the second part
 
@@ -73,7 +74,12 @@ def cuts(load_cases: LoadCases, most: int = MOST) -> Iterator[Cut]:
     order = np.argsort(first, kind="stable")
     order = order[np.isfinite(first[order])]
     ended = np.maximum.accumulate(last[order])
-    begins = [k for k in range(FEWEST, len(order) - FEWEST + 1) if ended[k - 1] < first[order[k]]]
+    before = np.cumsum(np.bincount(load_cases.pose, minlength=len(first))[order])
+    begins = [
+        k
+        for k in range(FEWEST, len(order) - FEWEST + 1)
+        if ended[k - 1] < first[order[k]] and LEAST <= before[k - 1] <= before[-1] - LEAST
+    ]
     if len(begins) > most:
         begins = [begins[int(k)] for k in np.linspace(0, len(begins) - 1, most).round()]
     for k in begins:
