@@ -148,6 +148,17 @@ OF_POSITIONS: tuple[Fault, ...] = (
         what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
     ),
     *of(
+        "plan/positions_pool.py", *tests("plan", "of_positions"),
+        positions_read_already_forgotten=("before += A.T @ A", "before += 0.0 * (A.T @ A)"),
+        frame_and_marker_taken_for_known=("wide = PoseProblem(start, there", "wide = PoseProblem(model, there"),
+    ),
+    *of(
+        "plan/of_positions.py", *tests("plan", "of_positions"),
+        what_was_plausible_counted_as_told=("std /= np.sqrt(1.0 - share)", "std /= 1.0"),
+        payloads_that_no_motor_holds=("return within, a[held], (", "return within, a, ("),
+        foretold_with_what_was_known_alone=("total = design.known + design.gains[list(design.rows)].sum(axis=0)", "total = design.known"),
+    ),
+    *of(
         "explain/absolute/other_poses.py", *tests("absolute", "advice"),
         poses_that_tell_nothing_proposed=("if found.after >= TOLD:", "if found.after >= 0.0:"),
     ),

@@ -362,8 +362,9 @@ FAULTS: tuple[Fault, ...] = (
         "plan/design.py", *tests("plan", "design"),
         displacement_as_sure_as_one_reading=("noise = sigma * DISPLACEMENT", "noise = sigma"),
         other_parameters_held_for_known=("0.5 * (whole - rest)", "0.5 * whole"),
-        readings_taken_already_forgotten=("start += information(model, known, span).sum(axis=0)", "start += 0.0 * information(model, known, span).sum(axis=0)"),
-        choice_never_exchanged=("if found[pick] > reached + BETTER:", "if False:"),
+        readings_taken_already_forgotten=("before += information(model, known, span).sum(axis=0)", "before += 0.0 * information(model, known, span).sum(axis=0)"),
+        choice_never_exchanged=("if value > reached + BETTER:", "if False:"),
+        single_loads_exchanged_alone=("kept = [row for row in rows if owner[row] != own]", "kept = rows[1:]"),
     ),
     *of(
         "plan/discriminate.py", *tests("plan", "design"),

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
         write_model,
     )
     from sk120stiff.model import loaded_stiffness as stiffness
+    from sk120stiff.plan.of_positions import plan_positions
     from sk120stiff.plan.planned import plan
     from sk120stiff.plan.schedule import Schedule
     from sk120stiff.plan.simulation import simulate
@@ -72,6 +73,7 @@ _HOME = {
         "write_measurements",
         "sk120stiff.model": "Model base_model joint_spring_model loaded_stiffness predict "
         "read_model stiffness write_model",
+        "sk120stiff.plan.of_positions": "plan_positions",
         "sk120stiff.plan.planned": "plan",
         "sk120stiff.plan.schedule": "Schedule",
         "sk120stiff.plan.simulation": "simulate",
@@ -111,6 +113,7 @@ __all__ = [
     "load_robot",
     "loaded_stiffness",
     "plan",
+    "plan_positions",
     "predict",
     "read",
     "read_measurements",

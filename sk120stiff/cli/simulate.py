@@ -115,7 +115,9 @@ def command(
         else f"{loaded.n_readings} readings at {len(loaded.poses)} poses, displacements up to "
         f"{largest * 1e6:.4g} µm, seed {seed}."
     )
-    return Answer(document, [said, f"Written to {out} and {out.with_suffix('.yaml')}."])
+    return Answer(
+        document, [said, *loaded.notes, f"Written to {out} and {out.with_suffix('.yaml')}."]
+    )
 
 
 def _noise(

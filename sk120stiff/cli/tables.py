@@ -62,16 +62,26 @@ def cell(value: object) -> str:
 
 
 def plan_table(title: str, plan: Measurements, digits: int = 1) -> Table:
-    """Poses and forces to be measured: degrees, mm, N."""
+    """Poses, forces and payloads to be measured: degrees, mm, N, kg."""
     turns = [kind == "angle" for kind in plan.joint_kinds]
     scale = [180.0 / pi if turn else 1e3 for turn in turns]
     joints = zip(plan.joint_names, turns, strict=True)
     columns = ["pose", *(f"{name} [{'deg' if turn else 'mm'}]" for name, turn in joints)]
-    rows = [
-        (label, *(f"{x:.{digits}f}" for x in a * scale), *_in_newtons(w[:3]))
-        for label, a, w in zip(plan.pose, plan.joints, plan.wrench, strict=True)
+    rows: list[tuple[object, ...]] = [
+        (label, *(f"{x:.{digits}f}" for x in a * scale))
+        for label, a in zip(plan.pose, plan.joints, strict=True)
     ]
-    return table(title, [*columns, "fx [N]", "fy [N]", "fz [N]"], rows)
+    if plan.absolute is None or plan.wrench.any():
+        columns += ["fx [N]", "fy [N]", "fz [N]"]
+        rows = [(*row, *_in_newtons(w[:3])) for row, w in zip(rows, plan.wrench, strict=True)]
+    if plan.absolute is not None:
+        columns.append("payload [kg]")
+        hung = zip(rows, plan.absolute.payload, strict=True)
+        rows = [(*row, f"{mass:.4g}") for row, mass in hung]
+        if len(set(plan.absolute.markers)) > 1:
+            columns.append("marker")
+            rows = [(*row, name) for row, name in zip(rows, plan.absolute.markers, strict=True)]
+    return table(title, columns, rows)
 
 
 def _in_newtons(force: Array) -> Iterator[str]:

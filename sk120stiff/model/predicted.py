@@ -142,15 +142,20 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
     return predict_channels(model, measurements)
 
 
+def knows_place(model: Model, measurements: Measurements) -> bool:
+    """Whether the model has a frame for readings in an instrument's own axes, where they are so."""
+    said = measurements.absolute
+    known = any(isinstance(effect, Viewpoint) for effect in model.effects)
+    return known or said is None or said.frame != "unknown"
+
+
 def refuse_unknown_place(model: Model, measurements: Measurements) -> None:
     """Stop where readings are in an instrument's own axes, and the model has no frame for it.
 
     Raises:
         InputError: So it is.
     """
-    said = measurements.absolute
-    known = any(isinstance(effect, Viewpoint) for effect in model.effects)
-    if said is not None and said.frame == "unknown" and not known:
+    if not knows_place(model, measurements):
         raise InputError(
             "the model does not know where the tracker stands",
             where=str(measurements.path or "measurements"),

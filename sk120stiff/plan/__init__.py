@@ -4,6 +4,7 @@ from sk120stiff.plan.cell import Cell, read_cell
 from sk120stiff.plan.design import d_optimal, random_choice, well_spread
 from sk120stiff.plan.discriminate import Rivalry, readings_for_all, rivalry, signature_columns
 from sk120stiff.plan.feasible import Verdict, feasible
+from sk120stiff.plan.of_positions import PlanOfPositions, plan_positions
 from sk120stiff.plan.places import Places
 from sk120stiff.plan.planned import Plan, plan, promised, to_be_taken
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
@@ -24,6 +25,7 @@ __all__ = [
     "NoWay",
     "Places",
     "Plan",
+    "PlanOfPositions",
     "Pool",
     "Rig",
     "Rivalry",
@@ -41,6 +43,7 @@ __all__ = [
     "jumps",
     "lowest_points",
     "plan",
+    "plan_positions",
     "promised",
     "random_choice",
     "random_pool",

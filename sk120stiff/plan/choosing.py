@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
-from sk120stiff.plan.design import d_optimal, random_choice, refuse_count, well_spread
+from sk120stiff.plan.design import Design, d_optimal, random_choice, refuse_count, well_spread
 from sk120stiff.plan.discriminate import rivalry
 from sk120stiff.plan.pool import Pool
 
@@ -28,6 +28,7 @@ class Chosen:
         untold: Parameter → why no plan shows it.
         evidence: √λ between the two effects before and after, in units of the noise; None where
             parameters are to be known.
+        design: Where parameters are to be known: how well they will be.
     """
 
     pool: Pool
@@ -36,6 +37,7 @@ class Chosen:
     gain_over: Callable[[Sequence[int]], float]
     untold: Mapping[str, str] = field(default_factory=dict)
     evidence: tuple[float, float] | None = None
+    design: Design | None = None
 
     def gains(self, seed: int) -> tuple[float, float]:
         """Median gain over random and over well-spread choices of the pool."""
@@ -74,7 +76,8 @@ def precise(
         model, pool, count=size[0], loads=size[1], sigma=sigma, known=known,
         parameters=[name for name in names if name not in untold],
     )  # fmt: skip
-    return Chosen(pool, design.rows, (*design.parameters, *untold), design.gain_over, untold)
+    names = [*design.parameters, *untold]
+    return Chosen(pool, design.rows, tuple(names), design.gain_over, untold, design=design)
 
 
 def telling(
@@ -99,7 +102,7 @@ def telling(
                 remedy="Ask 'explain', once the readings with it are there.",
             )
     rivals = rivalry(model, *between, pool, sigma=sigma, known=known)
-    refuse_count(pool, *size)
+    refuse_count(pool.pose, *size)
     choice = rivals.best(size[0], pool.pose, size[1])
 
     def gain_over(rows: Sequence[int]) -> float:

@@ -4,7 +4,7 @@ The information of a choice is the sum of its readings' AᵀA, on top of what is
 the plausible range of every parameter (Chaloner & Verdinelli 1995): so it is regular from the first
 reading on. D-optimal for some of the parameters is what makes the determinant of their own part of
 the covariance least, the others free (D_s, Atkinson, Donev & Tobias 2007). After the greedy choice
-single readings are exchanged as long as that helps (Fedorov 1972).
+poses are exchanged as long as that helps (Fedorov 1972).
 
 Beside it stands what people do without a design: random poses, or poses spread well over the
 joints' ranges. The paper's twenty were "well-spaced configurations ... determined heuristically to
@@ -87,11 +87,29 @@ def d_optimal(
     Raises:
         InputError: Nothing is free, a name is unknown or not free, or the pool is too small.
     """
-    free = model.free
-    names = [model.names[k] for k in free]
+    wanted = that_count(model, parameters)
+    refuse_count(pool.pose, count, loads)
+    span = np.array([model.parameters[k].spec.plausible for k in model.free])
+    noise = sigma * DISPLACEMENT
+    gains = information(model, pool, span) / noise**2
+    before = np.eye(len(span))
+    if known is not None:
+        before += information(model, known, span).sum(axis=0) / noise**2
+    return best_design(
+        model, wanted, gains, before, span, count, pool.pose if loads else None, loads or 1
+    )
+
+
+def that_count(model: Model, parameters: Sequence[str] | None) -> tuple[str, ...]:
+    """Full names of the parameters that count, all free ones by default.
+
+    Raises:
+        InputError: Nothing is free, or a name is unknown or not free.
+    """
+    names = [model.names[k] for k in model.free]
     if not names:
         raise InputError("no parameter of the model is free", where=model.robot.name)
-    wanted = list(dict.fromkeys(parameters or names))
+    wanted = tuple(dict.fromkeys(parameters or names))
     for name in wanted:
         model.parameter(name)
         if name not in names:
@@ -99,20 +117,37 @@ def d_optimal(
                 f"the parameter {name!r} is fixed in the model",
                 remedy="Write 'free: true' at it.",
             )
-    refuse_count(pool, count, loads)
+    return wanted
+
+
+def best_design(
+    model: Model,
+    wanted: Sequence[str],
+    gains: Array,
+    known: Array,
+    span: Array,
+    count: int,
+    pose: Index | None = None,
+    loads: int = 1,
+) -> Design:
+    """The choice that makes parameters as well known as can be, see `d_optimal`.
+
+    Args:
+        model: Its P free parameters are estimated.
+        wanted: Full names of those that count.
+        gains: (M, P, P) information of each candidate on them over their spans.
+        known: (P, P) information before, that of what is plausible in it.
+        span: (P,) plausible sizes, internal.
+        count, pose, loads: See `best_choice`.
+    """
+    names = [model.names[k] for k in model.free]
     interest = np.array([names.index(name) for name in wanted], dtype=np.intp)
-    span = np.array([model.parameters[k].spec.plausible for k in free])
-    noise = sigma * DISPLACEMENT
-    gains = information(model, pool, span) / noise**2
-    start = np.eye(len(span))
-    if known is not None:
-        start += information(model, known, span).sum(axis=0) / noise**2
     worth = determinant_worth(interest)
-    rows = best_choice(worth, gains, start, count, pool.pose if loads else None, loads or 1)
-    total = start + gains[rows].sum(axis=0)
+    rows = best_choice(worth, gains, known, count, pose, loads)
+    total = known + gains[rows].sum(axis=0)
     std = np.sqrt(np.diag(np.linalg.inv(total)))[interest] * span[interest]
     reached = float(worth(total[None])[0])
-    return Design(tuple(rows), tuple(wanted), std, reached, gains, start, interest)
+    return Design(tuple(rows), tuple(wanted), std, reached, gains, known, interest)
 
 
 def information(model: Model, pool: Pool, span: Array) -> Array:
@@ -137,16 +172,16 @@ def determinant_worth(interest: Index) -> Worth:
     return worth
 
 
-def refuse_count(pool: Pool, count: int, loads: int | None) -> None:
-    """Raise an `InputError` where so many cannot be chosen."""
+def refuse_count(pose: Index, count: int, loads: int | None) -> None:
+    """Raise an `InputError` where so many cannot be chosen; `pose` (M,): that of each candidate."""
     if loads is None:
-        if not 1 <= count <= pool.count:
+        if not 1 <= count <= len(pose):
             raise InputError(
-                f"{count} readings cannot be chosen from {pool.count} candidates",
+                f"{count} readings cannot be chosen from {len(pose)} candidates",
                 remedy="Ask for fewer, or give the rig more directions or steps.",
             )
         return
-    sizes = np.sort(np.bincount(pool.pose))[::-1]
+    sizes = np.sort(np.bincount(pose))[::-1]
     if count < 1 or loads < 1 or count > len(sizes) or sizes[count - 1] < loads:
         raise InputError(
             f"{count} poses with {loads} load{'s' if loads > 1 else ''} each cannot be chosen from "
@@ -163,50 +198,47 @@ def best_choice(
     pose: Index | None = None,
     loads: int = 1,
 ) -> list[int]:
-    """Rows of `gains` (M, k, k) whose sum is worth most: greedy, then by exchange.
+    """Rows of `gains` (M, k, k) whose sum is worth most: greedy, then by exchange of whole poses.
 
-    With the `pose` (M,) of each candidate, `count` poses with `loads` rows each.
+    With the `pose` (M,) of each candidate, `count` poses with `loads` rows each; else single rows.
     """
-    rows: list[int] = []
-    total = known.copy()
-    free = np.ones(len(gains), dtype=bool)
-    for _ in range(count * loads):
-        pick = _best(worth(total + gains), _open(free, rows, pose, count, loads))
-        rows.append(pick)
-        free[pick] = False
-        total = total + gains[pick]
+    owner = np.arange(len(gains)) if pose is None else pose
+
+    def filled(rows: list[int], total: Array, size: int) -> tuple[list[int], Array]:
+        while len(rows) < size:
+            found = worth(total + gains)
+            pick = int(np.argmax(np.where(_open(rows, owner, count, loads), found, -np.inf)))
+            rows, total = [*rows, pick], total + gains[pick]
+        return rows, total
+
+    rows, total = filled([], known, count * loads)
     reached = float(worth(total[None])[0])
     for _ in range(PASSES):
         before = reached
-        for slot, row in enumerate(rows):
-            without = total - gains[row]
-            found = worth(without + gains)
-            others = rows[:slot] + rows[slot + 1 :]
-            pick = _best(found, _open(free, others, pose, count, loads))
-            if found[pick] > reached + BETTER:
-                free[row], free[pick] = True, False
-                rows[slot] = pick
-                total = without + gains[pick]
-                reached = float(found[pick])
+        for own in owner[rows]:
+            kept = [row for row in rows if owner[row] != own]
+            gone = [row for row in rows if owner[row] == own]
+            if not gone:  # given up for another already
+                continue
+            tried, after = filled(kept, total - gains[gone].sum(axis=0), len(rows))
+            value = float(worth(after[None])[0])
+            if value > reached + BETTER:
+                rows, total, reached = tried, after, value
         if reached <= before + BETTER:
             break
     return rows
 
 
-def _open(free: Mask, rows: Sequence[int], pose: Index | None, count: int, loads: int) -> Mask:
+def _open(rows: Sequence[int], owner: Index, count: int, loads: int) -> Mask:
     """(M,) candidates that may still join `rows`: no pose has too many, nor are there too many."""
-    if pose is None:
-        return free
-    taken = np.bincount(pose[list(rows)], minlength=int(pose.max()) + 1)
-    full = np.bincount(pose) < loads  # a pose that never can have so many loads
+    taken = np.bincount(owner[list(rows)], minlength=int(owner.max()) + 1)
+    full = np.bincount(owner) < loads  # a pose that never can have so many loads
     good = (taken < loads) & ~full
     if np.count_nonzero(taken) >= count:
         good &= taken > 0
-    return np.asarray(free & good[pose])
-
-
-def _best(found: Array, free: Mask) -> int:
-    return int(np.argmax(np.where(free, found, -np.inf)))
+    open_rows = good[owner]
+    open_rows[list(rows)] = False
+    return np.asarray(open_rows)
 
 
 def random_choice(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:

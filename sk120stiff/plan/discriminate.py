@@ -57,6 +57,10 @@ class Rivalry:
             np.array([_padded(block, size) for block in known]) + prior(size),
         )
 
+    def of_candidates(self, rows: Index) -> Rivalry:
+        """The same of some candidates."""
+        return Rivalry(self.gains[:, rows], self.known)
+
     def evidence_of(self, rows: Sequence[int]) -> float:
         """√λ of a choice, the smaller of both directions, in units of the noise."""
         total = self.known + self.gains[:, list(rows)].sum(axis=1)

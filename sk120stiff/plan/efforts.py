@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import Refusal
 from sk120stiff.plan.cell import Cell
 from sk120stiff.robot import Robot
@@ -37,13 +37,7 @@ def held_loads_of(robot: Robot, cell: Cell, a: Array, wrench: Array, point: Arra
     """
     share = _holdable_share(robot, a, wrench, point, cell.effort_share * robot.efforts)
     fallen = share == 0.0
-    if fallen.mean() > PLACEHOLDER:
-        raise Refusal(
-            f"at {100 * fallen.mean():.0f} % of the poses the efforts of the URDF cannot even hold "
-            "the arm's own weight",
-            where=robot.name,
-            remedy='Correct effort or masses in the URDF; effort="0" says that it is not known.',
-        )
+    _refuse_placeholders(robot, fallen)
     size = np.linalg.norm(wrench[:, :3], axis=1)
     # Rounded down to three digits: a scale that is set by hand, and never above what is allowed.
     digit = 10.0 ** (np.floor(np.log10(np.maximum(share * size, 1e-300))) - 2)
@@ -61,6 +55,30 @@ def held_loads_of(robot: Robot, cell: Cell, a: Array, wrench: Array, point: Arra
             "effort in the URDF, the arm's weight included."
         )
     return Held(rows, scaled, tuple(remarks))
+
+
+def poses_held(robot: Robot, cell: Cell, a: Array, mass: Array, point: Array) -> Mask:
+    """(N,) poses (N, n) at which motors hold the arm and masses (N,) [kg] at a point of the tool.
+
+    Raises:
+        Refusal: The motors cannot hold the arm's weight at most of the poses.
+    """
+    wrench = np.zeros((len(a), 6))
+    wrench[:, :3] = mass[:, None] * robot.gravity_in_base
+    share = _holdable_share(robot, a, wrench, point, cell.effort_share * robot.efforts)
+    _refuse_placeholders(robot, share == 0.0)
+    return np.asarray(share >= 1.0)
+
+
+def _refuse_placeholders(robot: Robot, fallen: Mask) -> None:
+    """Raise a `Refusal` where motors could not hold the arm itself at most of the poses."""
+    if fallen.mean() > PLACEHOLDER:
+        raise Refusal(
+            f"at {100 * fallen.mean():.0f} % of the poses the efforts of the URDF cannot even hold "
+            "the arm's own weight",
+            where=robot.name,
+            remedy='Correct effort or masses in the URDF; effort="0" says that it is not known.',
+        )
 
 
 def weight_torques(robot: Robot, a: Array) -> Array:

@@ -35,7 +35,7 @@ class Places:
         worth, total = determinant_worth(np.arange(len(span))), 1e-6 * np.eye(len(span))
         standing: dict[str, dict[int, list[int]]] = {}
         for row, (pose, a) in enumerate(zip(pool.pose, pool.load_cases.a, strict=True)):
-            standing.setdefault(self._place(a), {}).setdefault(int(pose), []).append(row)
+            standing.setdefault(self.place_of(a), {}).setdefault(int(pose), []).append(row)
         kept: list[int] = []
         for poses in standing.values():
             rows = list(poses.values())
@@ -47,10 +47,11 @@ class Places:
 
     def lost(self, pool: Pool) -> tuple[str, ...]:
         """Places of which a pool has no pose any more."""
-        left = {self._place(a) for a in pool.load_cases.a}
+        left = {self.place_of(a) for a in pool.load_cases.a}
         return tuple(name for name in dict.fromkeys(self.names) if name not in left)
 
-    def _place(self, a: Array) -> str:
+    def place_of(self, a: Array) -> str:
+        """Label of the place at which a pose (n,) stands."""
         return self.names[int(np.argmin(np.abs(self.a - a).max(axis=1)))]
 
     def named(self, plan: Measurements) -> Measurements:
@@ -60,7 +61,7 @@ class Places:
         for pose, joints in zip(plan.pose, plan.joints, strict=True):
             if pose in labels:
                 continue
-            name = self._place(joints)
+            name = self.place_of(joints)
             taken[name] = taken.get(name, 0) + 1
             labels[pose] = name if taken[name] == 1 else f"{name}/{taken[name]}"
         return replace(plan, pose=tuple(labels[pose] for pose in plan.pose))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -72,7 +72,7 @@ class Plan(Measurements):
     left_out: int
 
     @classmethod
-    def of(cls, readings: Measurements, **told: Any) -> Plan:
+    def of(cls, readings: Measurements, **told: Any) -> Self:
         """Readings to be taken, with what is told beside them."""
         own = {each.name: getattr(readings, each.name) for each in fields(Measurements)}
         return cls(**own, **told)
@@ -187,11 +187,13 @@ def plan(
         cell=within,
     )
     unheld = () if places is None else places.lost(pool)
-    way, left_out = None, 0
-    while True:
+
+    def choose(banned: Sequence[Array]) -> tuple[Chosen, Measurements]:
         choice, poses = pool, count
+        for a in banned:
+            choice = choice.without(a)
         if places is not None and count is None:
-            choice = places.one_each(model, pool)
+            choice = places.one_each(model, choice)
             poses = len(np.unique(choice.pose))
         size = poses or 0, loads
         if between is None:
@@ -201,27 +203,58 @@ def plan(
         found = to_be_taken(
             robot, choice, chosen.rows, zero="unknown" if known is None else known.zero
         )
-        if places is not None:
-            found = places.named(found)
-        if not drive:
-            break
-        labels = found.poses
-        try:
-            found, way = in_order(found, robot, within, seed)
-        except NoWay as error:
-            if left_out == MOST_LEFT_OUT:
-                raise
-            left_out += 1
-            pool = pool.without(found.joints[found.pose.index(labels[error.pose])])
-        else:
-            if places is None:
-                found = replace(found, pose=numbered(found.pose))
-            break
+        return chosen, found if places is None else places.named(found)
+
+    chosen, found, way, left_out = drivable(
+        choose, robot, within, drive=drive, named=places is not None, seed=seed
+    )
     return Plan.of(
         found, model=model, chosen=chosen, standard=standard, cell=within, known=known, seed=seed,
-        remarks=pool.remarks if places is None else _remarks(places, pool, unheld),
+        remarks=pool.remarks if places is None else _remarks(places, chosen.pool, unheld),
         way=way, left_out=left_out,
     )  # fmt: skip
+
+
+def drivable(
+    choose: Callable[[Sequence[Array]], tuple[Chosen, Measurements]],
+    robot: Robot,
+    cell: Cell,
+    *,
+    drive: bool,
+    named: bool,
+    seed: int,
+) -> tuple[Chosen, Measurements, Route | None, int]:
+    """What is chosen, in an order of little driving by a free way where one is wanted.
+
+    Args:
+        choose: Chooses readings without some poses (n,), to which no way leads.
+        robot, cell: What is driven, and what stands about it.
+        drive: Order them, and find the way.
+        named: The poses have labels of their own, which they keep.
+        seed: Of the ways.
+
+    Returns:
+        tuple: What was chosen, the readings, their way, and how many poses were left out.
+
+    Raises:
+        Refusal: No free way leads to several of them.
+    """
+    banned: list[Array] = []
+    while True:
+        chosen, found = choose(banned)
+        if not drive:
+            return chosen, found, None, 0
+        labels = found.poses
+        try:
+            ordered, way = in_order(found, robot, cell, seed)
+        except NoWay as error:
+            if len(banned) == MOST_LEFT_OUT:
+                raise
+            banned.append(found.joints[found.pose.index(labels[error.pose])])
+        else:
+            if not named:
+                ordered = replace(ordered, pose=numbered(ordered.pose))
+            return chosen, ordered, way, len(banned)
 
 
 def _remarks(places: Places, pool: Pool, unheld: Sequence[str]) -> tuple[str, ...]:

@@ -111,6 +111,9 @@ class Rig:
         return np.asarray(steps[np.searchsorted(steps, np.asarray(size) + 1e-9, side="right") - 1])
 
 
+HANGING = Rig("what hangs on the tool")  # nothing pulls it aside
+
+
 def like(forces: Array) -> Rig:
     """The rig that brought some forces (N, 3): all directions between those that were measured."""
     found: list[Array] = []

@@ -18,7 +18,7 @@ from sk120stiff.measurements import Channels, Measurements
 from sk120stiff.measurements.channels import ANGLES, BY_LOAD, KINDS, Kind, inclined
 from sk120stiff.model import Model
 from sk120stiff.model.pose_reading import move_by_load, read_poses
-from sk120stiff.model.predicted import refuse_unknown_place
+from sk120stiff.model.predicted import knows_place, refuse_unknown_place
 from sk120stiff.robot.rotations import rotation_of, rotation_vector
 
 
@@ -50,7 +50,11 @@ def simulated_channels(
     if said is None:
         raise InputError("these are no channels")
     model = model.under(plan.gravity)
-    refuse_unknown_place(model, plan)
+    notes: tuple[str, ...] = ()
+    if plan.is_plan and not knows_place(model, plan):  # nobody has put it anywhere yet
+        notes = ("The instrument's axes are those of the base: the model knows of no others.",)
+    else:
+        refuse_unknown_place(model, plan)
     exact = foretold(model, plan, said.channels)
     twice = np.sqrt(2.0) if own_zero else 1.0
     sigma = {
@@ -65,7 +69,7 @@ def simulated_channels(
     stated: dict[str, float] = {kind: value for kind, value in sigma.items() if value > 0.0}
     channels = replace(said.channels, **made, sigma=stated, sigma_of_rows=None)
     return replace(
-        plan, absolute=replace(said, channels=channels), path=None, data_hash="", notes=()
+        plan, absolute=replace(said, channels=channels), path=None, data_hash="", notes=notes
     )
 
 

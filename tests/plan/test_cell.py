@@ -114,9 +114,9 @@ def test_a_weight_hangs_in_several_sizes_and_the_motors_are_not_blamed_for_its_s
         assert feasible(arm, cell, cases.a, cases.wrench).ok.all()
         at_most = np.bincount(pool.pose).max()
         assert at_most >= 3
-        refuse_count(pool, 1, at_most)
+        refuse_count(pool.pose, 1, at_most)
         with pytest.raises(InputError, match="more directions or steps"):
-            refuse_count(pool, 1, at_most + 1)
+            refuse_count(pool.pose, 1, at_most + 1)
         assert steps == () or set(-cases.wrench[:, 2]) <= set(steps)
     up = Cell(rig=Rig(directions=np.array([[-0.0, -0.0, 1.0]]), steps=(1.0, 2.0)))
     pool = feasible_pool(arm, poses=12, directions=4, force=400.0, point=np.zeros(3), cell=up)

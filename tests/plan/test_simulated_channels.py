@@ -124,8 +124,12 @@ def test_what_has_no_meaning_is_refused(tmp_path: Path) -> None:
         sk.simulate(model, plan, noise=sk.NoiseModel(LENGTH, growth=0.1))
     unknown = "position: {frame: unknown}\n"
     away = sk.read(write(tmp_path, poses(4, 4), np.full((4, 3), np.nan), unknown))
+    there = sk.simulate(model, away).measurements  # nobody has put the tracker anywhere yet
+    here = sk.simulate(model, plan).measurements
+    np.testing.assert_array_equal(there.absolute.channels.position, here.absolute.channels.position)
+    assert "axes are those of the base" in there.notes[0] and not here.notes
     with pytest.raises(InputError, match="where the tracker stands"):
-        sk.simulate(model, away)
+        sk.simulate(model, there)
     loads = sk.plan(sk.base_model(sk.load_robot("motoman_sk120")), 3)
     with pytest.raises(InputError, match="no angle is read"):
         sk.simulate(sk.base_model(sk.load_robot("motoman_sk120")), loads, rotation_noise=ANGLE)

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TypedDict
+
+import numpy as np
+
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
+from sk120stiff.units import parse_values
 
 
 def named_parameters(model: Model, text: str) -> tuple[Model, list[str]]:
@@ -21,6 +28,55 @@ def named_parameters(model: Model, text: str) -> tuple[Model, list[str]]:
     if not dot:
         return larger, [p.name for p in larger.parameters if p.effect.id == added.id]
     return larger, [larger.parameter(text).name]
+
+
+class Hung(TypedDict, total=False):
+    """What hangs on the tool, as `plan_positions` takes it."""
+
+    payloads: list[float]
+    payload_point: Array
+
+
+def hung_on(masses: Sequence[str] | None, point: str | None, absolute: bool) -> Hung:
+    """--payload and --payload-point.
+
+    Raises:
+        InputError: They are no masses, or positions are not what is planned.
+    """
+    if not absolute and (masses or point is not None):
+        raise InputError(
+            "a payload stands by positions",
+            where="--payload" if masses else "--payload-point",
+            remedy="Add --positions to plan readings of where a marker stands; loads that pull the "
+            "tool aside have --force.",
+        )
+    hung = Hung()
+    if masses:
+        hung["payloads"] = [mass for text in masses for mass in _kilograms(text)]
+    if point is not None:
+        hung["payload_point"] = parse_values(
+            point, "length", where="--payload-point", like="0,0,80 mm"
+        )
+    return hung
+
+
+def _kilograms(text: str) -> list[float]:
+    """Masses of one --payload: '5 kg', or several with commas between them."""
+    found = []
+    for word in text.split(","):
+        number = word.strip().removesuffix("kg").strip()
+        try:
+            mass = float(number)
+        except ValueError:
+            mass = np.nan
+        if not 0.0 <= mass < np.inf:
+            raise InputError(
+                f"{word.strip()!r} is no mass",
+                where="--payload",
+                remedy="Write it in kg, like '5 kg'; several as '0,5,10 kg'.",
+            )
+        found.append(mass)
+    return found
 
 
 def two_effects(model: Model, text: str) -> tuple[Effect, Effect]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from sk120stiff.measurements.settings import find_settings
 from sk120stiff.measurements.table import read_table
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Cell, assumptions, feasible, jumps
+from sk120stiff.plan.rig import HANGING
 from sk120stiff.robot import Robot
 from sk120stiff.units import parse_values
 from sk120stiff.workspace import elastic_arm, joints_along, read_path
@@ -119,13 +121,18 @@ def _read(path: Path, given: Path | None, stated: Callable[[Cell], Cell]) -> _Ro
     data, robot = open_data(path)
     cell = stated(opened_cell(robot, given, path))
     used = data.masked()
+    at = used.point
+    if used.absolute is not None:
+        at = used.absolute.point[0]
+        if not used.wrench.any():
+            cell = replace(cell, rig=HANGING)
     when = used.order if used.order is not None else used.time
     if when is not None:  # as it was driven
         used = used.select(np.argsort(when, kind="stable"))
     load_cases = load_cases_of(robot, used)
     return _Rows(
         robot, cell, tuple(used.line), used.pose, load_cases.a, load_cases.wrench,
-        used.point, used.force_point, assumptions(robot, cell, used.point),
+        at, load_cases.force_point, assumptions(robot, cell, at),
         "drive around it by hand, or let 'sk120stiff plan --program FILE' find order and way.",
     )  # fmt: skip
 

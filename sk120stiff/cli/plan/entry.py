@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -14,7 +15,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.outputs import will_draw, will_show
-from sk120stiff.cli.plan.asked import named_parameters, two_effects
+from sk120stiff.cli.plan.asked import hung_on, named_parameters, two_effects
 from sk120stiff.cli.plan.check import checked, points_of
 from sk120stiff.cli.plan.told import told
 from sk120stiff.cli.tables import progress_bar
@@ -22,7 +23,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
-from sk120stiff.plan import Cell, as_measured, lowest_points, plan
+from sk120stiff.plan import Cell, Plan, as_measured, lowest_points, plan, plan_positions
 from sk120stiff.programs.driving import language_by_joints, route_program
 from sk120stiff.units import parse_size, parse_values
 from sk120stiff.workspace import places_of
@@ -42,6 +43,9 @@ def command(
     force: str = "400 N",
     noise: str | None = None,
     point: str | None = None,
+    positions: Annotated[bool, typer.Option("--positions")] = False,
+    payload: list[str] | None = None,
+    payload_point: str | None = None,
     lowest: Annotated[str | None, typer.Option("--floor", "--lowest")] = None,
     box: str | None = None,
     cell: CellOption = None,
@@ -60,7 +64,11 @@ def command(
     the URDF and cell.yaml tell: limits, efforts, collisions, floor, rig, tracker. `gain` is the
     precision (or evidence) over that of random poses.
 
+    With --positions, or --data that hold positions: poses and payloads at which to read where the
+    marker stands, for geometry and springs.
+
     Example: sk120stiff plan model.yaml --count 15 --floor '-0.8 m' --out plan.csv
+    Example: sk120stiff plan model.yaml --positions --count 40 --payload '0 kg' --payload '5 kg'
     Example: sk120stiff plan --model model.yaml --places reach.csv --page plan.html
     Example: sk120stiff plan --check plan.csv --cell cell.yaml
     Example: sk120stiff plan --check best.csv --model model.yaml
@@ -81,6 +89,12 @@ def command(
         noise (LENGTH): Standard uncertainty of one reading. [default: the data's, else 10 um]
         point (XYZ): Measured and loaded point in the tool frame, e.g. '0,50,120 mm'. [default: the
             data's, else the tool frame's origin]
+        positions: Plan readings of where a marker stands (tracker, camera, arm), not of what a load
+            does.
+        payload (MASS): Mass that hangs on the tool, with --positions: '5 kg'; repeat for several to
+            choose from. [default: those of --data, else none]
+        payload_point (XYZ): Where it hangs in the tool frame, '0,0,80 mm'. [default: that of
+            --data, else the tool frame's origin]
         lowest (LENGTH): Height in the base frame below which nothing may go: '-0.3 m'. [default: as
             low as --data went, else none]
         box (XYZXYZ): Box in the base frame for the measured point: '0.8,-1,0, 2.2,1,1.5 m'.
@@ -118,6 +132,8 @@ def command(
     will_draw(None, page)
     language = None if program is None else language_by_joints(program)
     known, start = _opened(robot, model, data)
+    absolute = positions or (known is not None and known.absolute is not None)
+    hung = hung_on(payload, payload_point, absolute)
     at = points_of(known, point)[0]
     within = _stated(opened_cell(start.robot, cell, data, model or _file(robot)), lowest, box)
     given = None
@@ -131,13 +147,18 @@ def command(
         larger, found = named_parameters(larger, text)
         names += found
     with progress_bar("plan"):
-        made = plan(
+        pull = parse_size(force, "force", where="--force", like="400 N")
+        kind = (
+            partial(plan_positions, **hung)
+            if absolute
+            else partial(plan, force=pull, directions=directions)
+        )
+        made: Plan = kind(
             larger,
             count,
             loads=loads,
             between=None if between is None else two_effects(start, between),
             parameters=names,
-            force=parse_size(force, "force", where="--force", like="400 N"),
             point=None if point is None else at,
             sigma=None
             if noise is None
@@ -146,7 +167,6 @@ def command(
             known=known,
             places=given,
             candidates=candidates,
-            directions=directions,
             drive=language is not None,
             seed=seed,
         )

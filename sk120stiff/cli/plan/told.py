@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.cli.tables import plan_table, table
-from sk120stiff.plan import Plan
+from sk120stiff.plan import Plan, PlanOfPositions
 
 Told = tuple[dict[str, object], list[object]]
 
@@ -17,7 +17,7 @@ def told(plan: Plan) -> Told:
 
 
 def _rows(plan: Plan) -> list[dict[str, object]]:
-    return [
+    rows: list[dict[str, object]] = [
         {
             "pose": label,
             "joints": dict(zip(plan.joint_names, a.tolist(), strict=True)),
@@ -25,6 +25,10 @@ def _rows(plan: Plan) -> list[dict[str, object]]:
         }
         for label, a, wrench in zip(plan.pose, plan.joints, plan.wrench, strict=True)
     ]
+    if plan.absolute is not None:
+        said = zip(rows, plan.absolute.payload.tolist(), plan.absolute.markers, strict=True)
+        rows = [row | {"payload_kg": mass, "marker": marker} for row, mass, marker in said]
+    return rows
 
 
 def _parameters(plan: Plan) -> Told:
@@ -52,19 +56,25 @@ def _parameters(plan: Plan) -> Told:
             continue
         shown = (public, unit) if np.isfinite(public) else (item.std, p.spec.internal_unit)
         rows.append((p.name, p.value, *shown))
-    document = {
+    document: dict[str, object] = {
         "criterion": "D-optimal",
         "for": list(plan.chosen.names),
         "gain": random,
         "gain_over_spread": spread,
         "expected": expected,
     }
-    return document, [
+    said: list[object] = [
         table("To expect", ["parameter", "value", "std. error", "unit"], rows),
         f"Standard errors {random:.2f} times smaller than with random poses, {spread:.2f} times "
         "smaller than with well-spread ones.",
-        *blind,
     ]
+    if isinstance(plan, PlanOfPositions) and np.isfinite(plan.foretold):
+        document["foretold_um"] = 1e6 * plan.foretold
+        said.append(
+            f"Where the marker stands will be foretold to {1e6 * plan.foretold:.3g} um (standard "
+            "error per axis, over all poses to choose from), as far as the model's laws hold."
+        )
+    return document, [*said, *blind]
 
 
 def _effects(plan: Plan) -> Told:

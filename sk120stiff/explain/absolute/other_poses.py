@@ -7,17 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.aliases import imitators
 from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import Calibration
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.poses import labels_to_come
-from sk120stiff.plan import Cell, Rig, Rivalry, cell_from_data, random_pool
-from sk120stiff.plan.discriminate import over_ranges, with_both
+from sk120stiff.plan import Cell, Rig, cell_from_data, random_pool
+from sk120stiff.plan.discriminate import with_both
+from sk120stiff.plan.positions_pool import rivalry_of, to_be_read
 
 POOL, COUNT = 200, 8  # poses to choose from, and chosen
 TOLD = 3.0  # standard deviations by which new readings must tell two names apart
@@ -109,53 +108,14 @@ def next_poses(
 def _telling(final: Calibration, there: Measurements, effect: Effect, rival: Effect) -> NextPoses:
     """The readings of a pool that tell most between two names."""
     problem = final.problem
-    both = ((effect, rival), (rival, effect))
-    known = [_columns(problem, problem.measurements, *pair)[0] for pair in both]
-    gains = []
-    for A, row in (_columns(problem, there, *pair) for pair in both):
-        each = np.zeros((there.n_readings, A.shape[1], A.shape[1]))
-        np.add.at(each, row, A[:, :, None] * A[:, None, :])
-        gains.append(each)
-    choice = Rivalry.of(gains, [A.T @ A for A in known]).best(min(COUNT, there.n_readings))
-    picked = there.select(np.array(choice.rows))
+    pool = replace(problem, measurements=there)
+    rivals = rivalry_of(pool, problem.measurements, effect, rival, pool.rows)
+    choice = rivals.best(min(COUNT, there.n_readings))
+    picked = to_be_read(
+        there.select(np.array(choice.rows)),
+        f"Poses and loads that tell {effect.id} from {rival.id}.",
+    )
     labels = labels_to_come(problem.measurements.pose, picked.n_readings)
     return NextPoses(
-        _blank(picked, labels, f"Poses and loads that tell {effect.id} from {rival.id}."),
-        (effect.id, rival.id),
-        choice.before,
-        choice.after,
+        replace(picked, pose=labels), (effect.id, rival.id), choice.before, choice.after
     )
-
-
-def _blank(picked: Measurements, pose: tuple[str, ...], source: str) -> Measurements:
-    """Readings to take: joint values as people type them, nothing of when or what was read."""
-    said, count = picked.absolute, picked.n_readings
-    if said is None:
-        raise ValueError("these are no positions")
-    return replace(
-        picked,
-        pose=pose,
-        joints=np.where(
-            [kind == "angle" for kind in picked.joint_kinds],
-            np.radians(np.round(np.degrees(picked.joints), 4)),
-            np.round(picked.joints, 7),
-        ),
-        absolute=replace(
-            said,
-            channels=replace(said.channels.without(np.ones(count, bool)), sigma_of_rows=None),
-            temperature=None,
-        ),
-        sigma=None, order=None, time=None, branch=None, repeat=None, use=np.ones(count, dtype=bool),
-        line=np.zeros(count, dtype=np.int64), path=None, source=source, extra={}, notes=(),
-        data_hash="",
-    )  # fmt: skip
-
-
-def _columns(
-    problem: PoseProblem, readings: Measurements, effect: Effect, rival: Effect
-) -> tuple[Array, Index]:
-    """(R, k) columns of R numbers in units of the noise, see `over_ranges`; and their readings."""
-    model = with_both(problem.model, effect, rival)
-    here = replace(problem, model=model, measurements=readings)
-    slope = here.of_channels.apply(here.channel_gap(model.values, derivative=True)[1])
-    return over_ranges(model, slope, effect), here.rows

@@ -262,7 +262,7 @@ def _fitted(
         used = readings.select(np.flatnonzero(readings.use & ~wild))
         wide = _problem(model, used, sigma, common)
         _refuse_too_few(wide)
-        small, frozen = least_set(model, _rigid_columns(wide, start), wide.span)
+        small, frozen = least_set(model, rigid_columns(wide, start), wide.span)
         problem = _problem(small, used, sigma, common)
         _refuse_no_rest(problem)
         found = fitted(problem)
@@ -312,7 +312,7 @@ def _problem(
     return replace(problem, noise=replace(noise, sigma=float(np.sqrt(np.mean(own**2)))))
 
 
-def _rigid_columns(problem: PoseProblem, start: Model) -> Array:
+def rigid_columns(problem: PoseProblem, start: Model) -> Array:
     """(M, P_free) whitened derivative of the rigid arm as it was stated.
 
     Through sag and through second order nearly everything shows a little; nobody means that when

@@ -1,0 +1,277 @@
+"""Poses at which to read where markers stand: a calibration by positions, planned.
+
+The choice is that of `design.py` (D-optimal; for calibration Borm & Menq 1991, Joubair & Bonev
+2013) and of `discriminate.py`, among the candidates of `positions_pool.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sk120stiff.arrays import Array, Index, on_one_thread
+from sk120stiff.effects import Effect, load_cases_of
+from sk120stiff.errors import InputError, Refusal
+from sk120stiff.identify import why_unseen
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+from sk120stiff.plan.cell import Cell
+from sk120stiff.plan.choosing import Chosen
+from sk120stiff.plan.design import best_design, refuse_count, that_count
+from sk120stiff.plan.discriminate import Rivalry
+from sk120stiff.plan.efforts import poses_held
+from sk120stiff.plan.places import Places
+from sk120stiff.plan.planned import LITTLE, POSES, TOO_LITTLE, Expected, Plan, drivable
+from sk120stiff.plan.pool import Pool, poses_in
+from sk120stiff.plan.positions_pool import (
+    PositionsPool,
+    labels_of,
+    positions_pool,
+    readings_like,
+    to_be_read,
+)
+from sk120stiff.plan.rig import HANGING
+from sk120stiff.plan.surroundings import assumptions, cell_from_data
+from sk120stiff.robot import Robot
+
+MARKERS = "The instrument's frame and the markers' places are fitted beside what is to be known."
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class PlanOfPositions(Plan):
+    """Poses and payloads at which to read positions next.
+
+    Attributes:
+        candidates: What they were chosen from; its model is the one that is to be known.
+    """
+
+    candidates: PositionsPool
+
+    @cached_property
+    def expected(self) -> tuple[Expected, ...]:
+        """See `Plan.expected`."""
+        design, untold = self.chosen.design, self.chosen.untold
+        if design is None:
+            return ()
+        span = {p.name: self.candidates.problem.reach(p) for p in self.model.parameters}
+        own = dict(zip(design.parameters, design.std.tolist(), strict=True))
+        cases, found = load_cases_of(self.model.robot, self), list[Expected]()
+        for name in self.chosen.names:
+            parameter, std = self.model.parameter(name), own.get(name, np.inf)
+            why = untold.get(name)
+            share = (std / span[name]) ** 2  # of what was plausible before: 1, nothing is told
+            if why is None and not share < LITTLE:
+                std, why = np.inf, why_unseen(cases, parameter) or TOO_LITTLE
+            elif why is None:
+                std /= np.sqrt(1.0 - share)
+            found.append(Expected(parameter, std, why))
+        return tuple(found)
+
+    @cached_property
+    def foretold(self) -> float:
+        """Standard uncertainty per axis of where the fitted model will put the marker [m].
+
+        Root mean square over all poses that were chosen from, as far as the model's laws hold; NaN
+        where not all readings are positions, or where two effects are told apart.
+        """
+        design, problem = self.chosen.design, self.candidates.problem
+        if design is None or problem.channels.present != ("position",):
+            return np.nan
+        total = design.known + design.gains[list(design.rows)].sum(axis=0)
+        everywhere = self.candidates.information[0].sum(axis=0)
+        share = np.trace(np.linalg.solve(total, everywhere)) / len(problem.rows)
+        return self.standard * float(np.sqrt(share))
+
+
+@on_one_thread
+def plan_positions(
+    model: Model,
+    count: int | None = None,
+    *,
+    loads: int = 1,
+    payloads: Sequence[float] = (),
+    payload_point: ArrayLike | None = None,
+    between: tuple[Effect, Effect] | None = None,
+    parameters: Sequence[str] = (),
+    point: ArrayLike | None = None,
+    sigma: float | None = None,
+    cell: Cell | None = None,
+    known: Measurements | None = None,
+    places: Places | None = None,
+    candidates: int = POSES,
+    drive: bool = False,
+    seed: int = 0,
+) -> PlanOfPositions:
+    """The poses at which to read where the marker stands next, such as can be driven.
+
+    D-optimal for springs and small errors of geometry, or T-optimal between two effects.
+
+    Args:
+        model: Model with its values; its free parameters are to be known, beside the geometry.
+        count: Number of poses; with `places` one at each by default.
+        loads: Number of payloads at each of them.
+        payloads: Masses that may hang on the tool [kg]; those of `known`, or none, by default.
+        payload_point: (3,) where they hang in the tool frame [m].
+        between: Two effects that are to be told apart instead.
+        parameters: Full names of the parameters that count; by default all that can be told, but
+            for the instrument's frame and the marker's place.
+        point: (3,) about where the marker sits in the tool frame [m]; its place is fitted.
+        sigma: Standard uncertainty of one length that is read [m]; that of `known`, or 10 µm, by
+            default.
+        cell: What poses must keep to.
+        known: Readings of this kind that there are already: their markers, payloads and columns
+            are those of the plan.
+        places: Poses to choose from; poses all over the joints' ranges by default.
+        candidates: Number of poses to choose from.
+        drive: Order the poses for least driving, by a way that is free of collisions.
+        seed: Of the poses that are chosen from.
+
+    Raises:
+        InputError: Nothing that counts can be told, a name is unknown, or no pose is left.
+        Refusal: Next to no pose can be had, or no free way leads to several of them.
+
+    Examples:
+        >>> import sk120stiff as sk
+        >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
+        >>> made = sk.plan_positions(model, 20, payloads=[0, 50], candidates=40)
+        >>> made.n_readings, sorted(set(made.absolute.payload.tolist()))
+        (20, [0.0, 50.0])
+    """
+    if count is None and places is None:
+        raise InputError("nothing says how many poses to plan", remedy="Give count, or places.")
+    if sigma is not None and not 0.0 < sigma < np.inf:
+        raise InputError(f"a plan with sigma = {sigma:g}", remedy="Give a positive number.")
+    robot, used = model.robot, None
+    if known is not None:
+        if known.absolute is None or known.is_plan:
+            raise InputError("these readings are no positions", where=str(known.path or "known"))
+        used = known.with_joints(robot.actuated, robot.kinds).masked()
+    like = readings_like(robot, used, payloads, payload_point, point)
+    within, a, remarks = _standing(robot, like, used, cell, places, candidates, seed)
+    pool = positions_pool(model, like, a, known=used, sigma=sigma)
+    rivals = None if between is None else pool.rivalry(*between)
+    wanted, untold = _wanted(pool, parameters) if rivals is None else ((), {})
+    gains, before = pool.information
+    group = pool.pool.pose
+    if places is not None and count is None:
+        at = [places.place_of(each) for each in pool.pool.load_cases.a]
+        group = np.unique(at, return_inverse=True)[1].reshape(-1)
+    poses = int(group.max()) + 1 if count is None else count
+
+    def choose(banned: Sequence[Array]) -> tuple[Chosen, Measurements]:
+        gone = [(pool.pool.load_cases.a == each).all(axis=1) for each in banned]
+        left = np.flatnonzero(~np.any(gone, axis=0)) if gone else np.arange(pool.pool.count)
+        own = np.unique(group[left], return_inverse=True)[1].reshape(-1)
+        size = min(poses, int(own.max()) + 1) if count is None else poses
+        refuse_count(own, size, loads)
+        rest = Pool(pool.pool.load_cases.rows(left))
+        if rivals is not None and between is not None:
+            chosen = _between(rivals.of_candidates(left), rest, own, (size, loads), between)
+        else:
+            design = best_design(
+                pool.problem.model, wanted, gains[left], before, pool.span, size, own, loads
+            )
+            names = (*wanted, *untold)
+            chosen = Chosen(rest, design.rows, names, design.gain_over, untold, design=design)
+        rows = pool.rows_of(left[list(chosen.rows)])
+        taken = to_be_read(pool.problem.measurements.select(rows), SOURCE)
+        taken = replace(taken, pose=labels_of(taken, used))
+        return chosen, taken if places is None else places.named(taken)
+
+    named = places is not None or used is not None
+    chosen, taken, way, left_out = drivable(
+        choose, robot, within, drive=drive, named=named, seed=seed
+    )
+    return PlanOfPositions.of(
+        taken, model=pool.problem.model, chosen=chosen, standard=pool.standard, cell=within,
+        known=known, seed=seed, way=way, left_out=left_out, candidates=pool,
+        remarks=(*pool.remarks, *remarks),
+    )  # fmt: skip
+
+
+SOURCE = "poses and payloads chosen by 'sk120stiff plan'"
+
+
+def _between(
+    rivals: Rivalry,
+    pool: Pool,
+    pose: Index,
+    size: tuple[int, int],
+    between: tuple[Effect, Effect],
+) -> Chosen:
+    """The candidates that tell two effects apart."""
+    choice = rivals.best(size[0], pose, size[1])
+
+    def gain_over(rows: Sequence[int]) -> float:
+        return choice.after / max(rivals.evidence_of(rows), 1e-12)
+
+    names = (between[0].id, between[1].id)
+    return Chosen(pool, choice.rows, names, gain_over, evidence=(choice.before, choice.after))
+
+
+def _wanted(pool: PositionsPool, asked: Sequence[str]) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Parameters that are to be known, and those that these candidates do not tell, with why.
+
+    Raises:
+        InputError: None that was asked for can be told.
+    """
+    model = pool.problem.model
+    names = list(dict.fromkeys(asked)) or list(pool.of_the_arm)
+    missing = [name for name in names if name not in model.names]
+    if missing:
+        raise InputError(
+            " ".join((f"nothing to plan for: {missing[0]} does not show.", *pool.remarks)),
+            where="--for",
+            remedy="State masses, or payloads; or plan for the geometry alone.",
+        )
+    untold = {name: pool.untold[name] for name in names if name in pool.untold}
+    told = [name for name in names if name not in untold]
+    if not told:
+        why = untold[names[0]] if names else "no parameter of the model is free"
+        raise InputError(f"nothing to plan for: {why}", where=model.robot.name)
+    return that_count(model, told), untold
+
+
+def _standing(
+    robot: Robot,
+    like: Measurements,
+    known: Measurements | None,
+    cell: Cell | None,
+    places: Places | None,
+    count: int,
+    seed: int,
+) -> tuple[Cell, Array, tuple[str, ...]]:
+    """The cell, poses (K, n) in it at which the motors hold every payload, and what is to be said.
+
+    Raises:
+        Refusal: They hold it at none.
+    """
+    within = replace(cell or Cell(), rig=HANGING)
+    said = like.absolute
+    if said is None:
+        raise InputError("these readings are no positions")
+    at = said.point[0]
+    if known is not None:
+        cases = load_cases_of(robot, known)
+        within = cell_from_data(robot, within, cases.a, np.zeros((1, 6)), at)
+    rng = np.random.default_rng(seed)
+    a = poses_in(robot, count, rng, within, at) if places is None else places.a
+    heaviest = np.full(len(a), said.payload.max())
+    held = poses_held(robot, within, a, heaviest, said.payload_point)
+    if not held.any():
+        raise Refusal(
+            f"at no pose do the motors hold {heaviest[0]:g} kg beside the arm",
+            where=robot.name,
+            remedy="Give a smaller payload, or correct the efforts of the URDF.",
+        )
+    remarks = list(places.remarks) if places is not None else []
+    if not held.all():
+        remarks.append(
+            f"{int((~held).sum())} of {len(a)} poses were left out: the motors do not hold the arm "
+            "and its payload there."
+        )
+    return within, a[held], (*remarks, MARKERS, *assumptions(robot, within, at))
