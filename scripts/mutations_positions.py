@@ -154,7 +154,6 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "plan/of_positions.py", *tests("plan", "of_positions"),
-        what_was_plausible_counted_as_told=("std /= np.sqrt(1.0 - share)", "std /= 1.0"),
         payloads_that_no_motor_holds=("return within, a[held], (", "return within, a, ("),
         foretold_with_what_was_known_alone=("total = design.known + design.gains[list(design.rows)].sum(axis=0)", "total = design.known"),
     ),

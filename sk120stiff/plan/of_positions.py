@@ -67,7 +67,7 @@ class PlanOfPositions(Plan):
             if why is None and not share < LITTLE:
                 std, why = np.inf, why_unseen(cases, parameter) or TOO_LITTLE
             elif why is None:
-                std /= np.sqrt(1.0 - share)
+                std /= float(np.sqrt(1.0 - share))
             found.append(Expected(parameter, std, why))
         return tuple(found)
 

@@ -101,12 +101,12 @@ def test_payloads_are_chosen_among_and_have_to_be_held(model: sk.Model, tmp_path
     assert springs_of(heavy)["j5"] < springs_of(bare)["j5"]
     with pytest.raises(Refusal, match="at no pose do the motors hold 5000 kg"):
         sk.plan_positions(model, 10, payloads=[5000], point=AT, candidates=40)
-    weak = sk.load_robot(arm_file(tmp_path, effort="1500"), base="base", tool="tool")
+    weak = sk.load_robot(arm_file(tmp_path, effort="1000"), base="base", tool="tool")
     some = sk.plan_positions(sk.joint_spring_model(weak), 8, payloads=[30], candidates=80)
     assert any("motors do not hold" in said for said in some.remarks)
     hung = np.tile([0.0, 0.0, -30.0 * 9.80665, 0.0, 0.0, 0.0], (8, 1))
     torque = weak.gravity_torque(some.joints) + weak.screws(some.joints).torques(hung)
-    assert 1000.0 < np.abs(torque).max() <= 1500.0
+    assert 700.0 < np.abs(torque).max() <= 1000.0
 
 
 def test_an_arm_without_weight_has_its_geometry_planned_alone(tmp_path: Path) -> None:
