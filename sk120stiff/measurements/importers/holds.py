@@ -7,14 +7,14 @@ and slopes, so that weights hung one after the other are no noise.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.drafting import Draft
+from sk120stiff.measurements.importers.drafting import Draft, near_poses
 from sk120stiff.measurements.importers.loads import FORCES, MOMENTS
 from sk120stiff.measurements.poses import rows_at_rest
 
@@ -25,6 +25,7 @@ ODD = 6.0  # σ off the median of its hold: such a row is of another load
 WITHIN = (0.95, 1.96)  # of normal errors this share lies within so many σ
 NORMAL = 1.4826  # standard deviation of normal errors over the median of their sizes
 SMALL = 0.03  # of how loads differ from hold to hold: noise, and no loads one by one
+MANY = 2000  # rows of a recording: nobody reads as many one by one
 EVEN = 5.0  # times the noise along another axis: one sensor is about as noisy along each
 
 
@@ -147,12 +148,55 @@ def mean_loads(holds: list[Index]) -> Callable[[Column], Column]:
     return averaged
 
 
+def _pieces(changing: Index, joints: Array) -> list[Index]:
+    """Rows in turn of one standstill while the load changes, `LEAST` of them in a piece."""
+    found: list[Index] = []
+    cuts = np.flatnonzero(np.diff(changing) > 1) + 1
+    for run in np.split(changing, cuts) if len(changing) else []:
+        for still in rows_at_rest(joints[run], STILL):
+            cut = still[: len(still) // LEAST * LEAST].reshape(-1, LEAST)
+            found += [run[piece] for piece in cut]
+    return found
+
+
+def one_reading_each(draft: Draft, holds: Holds, notes: Sequence[str]) -> Sheet:
+    """The sheet with a row for each hold, the median of what was read in it; all others go."""
+    sheet, still = draft.sheet, holds.rows
+    middle = [int(run[len(run) // 2]) for run in still]
+    medians = {c.meaning for c in sheet.columns if c.meaning in ("x", "y", "z")} | {
+        c.meaning for c in draft.joints.taken
+    }
+    averaged = mean_loads(still)
+
+    def cut(column: Column) -> Column:
+        if column.meaning not in medians:
+            column = averaged(column)
+            return replace(column, cells=tuple(column.cells[k] for k in middle))
+        values = np.array([float(cell) for cell in column.cells])
+        cells = tuple(f"{np.median(values[run]):.12g}" for run in still)
+        return replace(column, cells=cells)
+
+    columns = tuple(map(cut, sheet.columns))
+    if sheet.get("pose") is None and len({tuple(row) for row in draft.loads.wrench[middle]}) > 1:
+        q = draft.joints.values[middle]
+        columns = (*columns, Column("standstill", "pose", None, "", near_poses(q)))
+    return replace(
+        sheet,
+        columns=columns,
+        spare=tuple(map(cut, sheet.spare)),
+        lines=tuple(sheet.lines[k] for k in middle),
+        rank=tuple(sheet.rank[k] for k in middle) if sheet.rank else (),
+        notes=(*sheet.notes, *notes),
+    )
+
+
 def as_repeats(draft: Draft) -> Sheet | None:
     """The sheet with one load for all rows of a hold, which then are repeats; None where loads were
     not read with noise, or where that may be loads of their own.
 
     A sensor is noisy along all axes that it reads, and little beside what loads differ by from hold
-    to hold. Weights that somebody changes from row to row are not.
+    to hold. Weights that somebody changes from row to row are not. Of a recording of many rows each
+    hold is one reading: rows in turn err alike, and tell no more than their middle does.
     """
     sheet, W = draft.sheet, draft.loads.wrench
     read = [k for k, name in enumerate(FORCES) if sheet.get(name) is not None]
@@ -167,6 +211,18 @@ def as_repeats(draft: Draft) -> Sheet | None:
         return None
     typical = int(np.median([len(rows) for rows in holds.rows]))
     scatter = scatter_um(draft, holds)
+    if len(W) > MANY and not draft.displaced and len(set(draft.marker_of)) < 2:
+        slopes = _pieces(holds.changing, draft.joints.values)
+        parts = sorted([*holds.rows, *slopes], key=lambda rows: int(rows[0]))
+        note = (
+            f"This is a recording of {len(W)} rows: in {len(holds.rows)} holds, of {typical} rows "
+            "in the median, the arm stood under one load, which was read with a noise of "
+            f"{holds.say()}. Each is one reading, the median of its rows (which scatter by "
+            f"{scatter:.3g} µm per axis) under their mean load"
+        )
+        if slopes:
+            note += f"; so are {len(slopes)} times {LEAST} rows in turn while the load changed"
+        return one_reading_each(draft, replace(holds, rows=parts), [f"{note}."])
     told = (
         f" They scatter by {scatter:.3g} µm per axis. If the instrument is no noisier over hours, "
         f"state that: noise: {{sigma: {scatter:.3g}, unit: um}} in the YAML file."

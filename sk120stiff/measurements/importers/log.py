@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.drafting import Draft, near_poses
+from sk120stiff.measurements.importers.contract import Sheet
+from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.holds import (
     LEAST,
     STILL,
-    Holds,
     holds_of,
-    mean_loads,
+    one_reading_each,
     scatter_um,
 )
 
@@ -40,47 +37,17 @@ def standstills(draft: Draft) -> Sheet | None:
     steps = np.abs(np.diff(q, axis=0)).max(axis=1)[np.minimum(holds.moving, len(q) - 2)]
     if not len(ways) or np.median(steps) > SHORT * np.median(ways):
         return None
-    return _of_standstills(draft, holds)
-
-
-def _of_standstills(draft: Draft, holds: Holds) -> Sheet:
-    sheet, still = draft.sheet, holds.rows
-    middle = [int(run[len(run) // 2]) for run in still]
-    medians = {c.meaning for c in sheet.columns if c.meaning in ("x", "y", "z")} | {
-        c.meaning for c in draft.joints.taken
-    }
-    averaged = mean_loads(still)
-
-    def cut(column: Column) -> Column:
-        if column.meaning not in medians:
-            column = averaged(column)
-            return replace(column, cells=tuple(column.cells[k] for k in middle))
-        values = np.array([float(cell) for cell in column.cells])
-        cells = tuple(f"{np.median(values[run]):.12g}" for run in still)
-        return replace(column, cells=cells)
-
-    typical = int(np.median([len(run) for run in still]))
+    typical = int(np.median([len(run) for run in holds.rows]))
     left = f"{len(holds.moving)} rows in which it moved"
     if len(holds.changing):
         left += f" and {len(holds.changing)} in which the load changed"
     notes = [
-        f"This is a log: in {len(still)} standstills, of {typical} rows in the median, the arm "
-        f"stood under one load. Each is one reading, the median of its rows (which scatter by "
+        f"This is a log: in {len(holds.rows)} standstills, of {typical} rows in the median, the "
+        f"arm stood under one load. Each is one reading, the median of its rows (which scatter by "
         f"{scatter_um(draft, holds):.3g} µm per axis); {left} are left out."
     ]
     if holds.noise.any():
         notes.append(
             f"Loads are read with a noise of {holds.say()}; that of a standstill is their mean."
         )
-    columns = tuple(map(cut, sheet.columns))
-    if sheet.get("pose") is None and len({tuple(row) for row in draft.loads.wrench[middle]}) > 1:
-        q = draft.joints.values[middle]
-        columns = (*columns, Column("standstill", "pose", None, "", near_poses(q)))
-    return replace(
-        sheet,
-        columns=columns,
-        spare=tuple(map(cut, sheet.spare)),
-        lines=tuple(sheet.lines[k] for k in middle),
-        rank=tuple(sheet.rank[k] for k in middle) if sheet.rank else (),
-        notes=(*sheet.notes, *notes),
-    )
+    return one_reading_each(draft, holds, notes)

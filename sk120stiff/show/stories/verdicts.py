@@ -10,6 +10,7 @@ from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.show.wording import chance, counted, um
 
 FEW_POSES = 8  # below this other poses confirm little
+LITTLE = 0.33  # of the noise: a remainder that changes no reading by as much as its error
 FEW = 2  # rivals that are told in the first lines; the evidence lists all
 
 
@@ -116,7 +117,18 @@ def _outside(answer: Explanation) -> str:
     return (
         f"Something is missing, and {why}. The model misses the "
         f"readings by {um(step.fit_rms)} µm rms per axis; "
-        f"{noise_makes(answer)}. Where it lives is told below."
+        f"{noise_makes(answer)}.{_little(answer)} Where it lives is told below."
+    )
+
+
+def _little(answer: Explanation) -> str:
+    """That what is left is small beside the noise, where many readings show it all the same."""
+    left, floor = answer.remainder, answer.noise_floor
+    if floor is None or not left.significant or left.interval[1] > LITTLE * floor:
+        return ""
+    return (
+        f" What is left beyond it is little, {um(left.rms)} µm (95 %: up to "
+        f"{um(left.interval[1])}), and shows by the number of readings alone."
     )
 
 

@@ -75,6 +75,26 @@ def test_weights_hung_one_after_the_other_are_readings(
     assert bool(changing) == (slope > 0)
 
 
+def test_of_a_recorded_ramp_each_hold_is_one_reading(tmp_path: Path) -> None:
+    """Thousands of rows of a load that rises and falls slowly, the arm at rest: none is alone."""
+    up = np.linspace(0.0, -80.0, 180)
+    pull = np.concatenate([np.zeros(40), up, up[::-1]])
+    q, F = np.repeat(POSES, len(pull), axis=0), np.zeros((9 * len(pull), 3))
+    F[:, 2] = np.tile(pull, 9)
+    x = load_robot(ur5(), tool="tool0").placement(q)[:, :3, 3] + PULL * F
+    rng = np.random.default_rng(3)
+    x = TURN.apply(x) + SHIFT + SIGMA * rng.normal(size=x.shape)
+    found = brought(tmp_path, q, x, noisy(F))
+    note = next(said for said in found.said if said.startswith("This is a recording"))
+    assert "3600 rows" in note and "times 5 rows in turn" in note
+    assert 9 * 15 < len(found.draft.pose) < 9 * 90 and len(set(found.draft.pose)) == 9
+    fz, read = found.readings.wrench[:, 2], found.readings.displacement
+    assert read is not None and fz.min() < -70.0
+    np.testing.assert_allclose(
+        np.linalg.norm(read, axis=1), PULL * np.abs(fz), atol=8.0 * SIGMA / np.sqrt(5)
+    )
+
+
 def test_a_knock_leaves_a_standstill_one_reading(tmp_path: Path) -> None:
     q, x, F = hung(dwell=20)
     F = noisy(F)
