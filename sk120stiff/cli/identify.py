@@ -16,7 +16,13 @@ from sk120stiff.cli.identify_rows import Interval, parameter_rows
 from sk120stiff.cli.opening import model_for, open_data, provenance, start_model
 from sk120stiff.cli.options import DataArgument, ModelOption, OutOption
 from sk120stiff.cli.tables import progress_bar, table
-from sk120stiff.data_checks import look, refuse_unbelievable, without_copies, without_stuck
+from sk120stiff.data_checks import (
+    look,
+    refuse_unbelievable,
+    without_copies,
+    without_stuck,
+    without_wild,
+)
 from sk120stiff.effects import effect
 from sk120stiff.errors import InputError, two_digits, warn
 from sk120stiff.files import will_write
@@ -88,8 +94,10 @@ def command(
     will_write(out)
     readings, robot = open_data(data)
     readings, stuck = without_stuck(readings)
-    if stuck:
-        warn(stuck)
+    readings, wild = without_wild(robot, readings)
+    for told in (stuck, wild):
+        if told:
+            warn(told)
     plain = start_model(robot, model)
     start = plain
     for name in effects or ():

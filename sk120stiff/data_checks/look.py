@@ -18,12 +18,12 @@ from sk120stiff.data_checks.scale import Scale, scale_doubt
 from sk120stiff.data_checks.search import SPARE, Slip, as_it_stands, find_slip
 from sk120stiff.data_checks.sheet import sheet_of
 from sk120stiff.data_checks.turns import TurnSlip, turn_slip
+from sk120stiff.data_checks.wild import HALF
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot
 
-HALF = 0.5  # of the readings' squares: what a passive arm explains at the very least
 NOISY = 3.0  # stated uncertainties that may be left before noise is no excuse
 OVERSTATED = 3.0  # times what is left, where a stated uncertainty exceeds the readings too
 

@@ -48,7 +48,7 @@ def passive(columns: Array, d: Array) -> Passive:
     if not known.all():
         A, y = A[known], y[known]
     size, gram, along = float(y @ y), A.T @ A, A.T @ y
-    c = _compliances(gram, along) if size > 0.0 else None
+    c = compliances(gram, along) if size > 0.0 else None
     if c is None:
         return Passive(0.0, size / max(len(y), 1), len(y))
     rest = y - A @ c
@@ -58,15 +58,15 @@ def passive(columns: Array, d: Array) -> Passive:
 
 def of_sums(gram: Array, along: Array, size: float, count: int) -> Passive:
     """The same from AᵀA, Aᵀd and dᵀd of `count` numbers; less exact where little is left."""
-    c = _compliances(gram, along) if size > 0.0 else None
+    c = compliances(gram, along) if size > 0.0 else None
     if c is None:
         return Passive(0.0, size / max(count, 1), count)
     left = max(float(size - 2.0 * along @ c + c @ gram @ c), 0.0)
     return Passive(1.0 - left / size, left / count, count)
 
 
-def _compliances(gram: Array, along: Array) -> Array | None:
-    """(k,) compliances from zero up that leave least; None where nothing shows any."""
+def compliances(gram: Array, along: Array) -> Array | None:
+    """(k,) compliances from zero up that leave least, from AᵀA and Aᵀd; None: none is seen."""
     scale = np.sqrt(np.diag(gram))
     seen = np.flatnonzero(scale > UNSEEN * scale.max(initial=0.0))
     if not len(seen):

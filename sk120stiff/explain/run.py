@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck
+from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
@@ -354,10 +354,12 @@ def _selections(
 
 def _sound(model: Model, measurements: Measurements) -> Measurements:
     """The readings with copied rows masked, once nothing in them looks like a slip of the pen."""
-    refuse_slips(model, measurements)
-    single, told = without_copies(measurements)
-    if told:
-        warnings.warn(told, ToolkitWarning, stacklevel=4)
+    sound, wild = without_wild(model.robot, measurements)
+    refuse_slips(model, sound)
+    single, copied = without_copies(sound)
+    for told in (wild, copied):
+        if told:
+            warnings.warn(told, ToolkitWarning, stacklevel=4)
     return single
 
 

@@ -2,8 +2,13 @@
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
+
+from sk120stiff.measurements import write_measurements
+from tests.data_checks.readings import ARMS
+from tests.data_checks.test_wild import with_wild
 
 DATA = Path("robots/motoman_sk120/data/table2_measured.csv")
 MODEL = "robots/motoman_sk120/model.yaml"
@@ -70,3 +75,15 @@ def test_a_sign_is_told_by_identify_and_predict_and_stops_explain(
     assert outcome.code == 1
     assert said in outcome.stderr
     assert not (tmp_path / "folder").exists()
+
+
+def test_identify_fits_the_others_and_says_so(run, tmp_path: Path) -> None:
+    known = ARMS["ur5"]()
+    wild = write_measurements(with_wild(known, [7], 0.02), tmp_path / "wild.csv")
+    clean = known.readings.select(np.setdiff1d(np.arange(known.readings.n_readings), [7]))
+    sound = write_measurements(clean, tmp_path / "sound.csv")
+    found = [run("identify", str(path), "--json") for path in (wild, sound)]
+    assert all(each.code == 0 for each in found), found[0].stderr
+    assert "set aside" in found[0].stderr and "set aside" not in found[1].stderr
+    springs = [[p["value"] for p in each.document["parameters"]] for each in found]
+    np.testing.assert_allclose(springs[0], springs[1], rtol=1e-6)
