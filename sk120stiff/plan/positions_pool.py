@@ -311,6 +311,7 @@ def _blank_rows(robot: Robot, count: int) -> Measurements:
             fit_point=True,
             markers=("",) * count,
             payload=np.zeros(count),
+            payload_placed=False,
         ),
     )
 

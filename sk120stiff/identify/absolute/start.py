@@ -83,8 +83,10 @@ def started(
         model = joined(model, "target_rotation", robot.tool_frame, mounted.ravel())
     if said.fit_payload:
         model = joined(model, "payload", robot.tool_frame)
-        if said.payload_differs:
-            model = joined(model, "force_point", "sensor")
+    # Nobody knows to the millimetre where a mass's centre lies; several masses tell it.
+    unplaced = geometry and not said.payload_placed and not readings.wrench.any()
+    if said.payload_differs and (said.fit_payload or unplaced):
+        model = joined(model, "force_point", "sensor")
     if geometry:
         for where in catalogue["joint_frame"].places(robot):
             model = joined(model, "joint_frame", where)

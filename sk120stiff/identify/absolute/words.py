@@ -197,8 +197,20 @@ def _hung(found: Calibration, readings: Measurements) -> list[str]:
     said = readings.absolute
     if said is None or said.payload_placed or not said.payload.any():
         return []
-    fitted = {"payload", "force_point"} & {effect.name for effect in found.model.effects}
-    if fitted or not any(isinstance(effect, Elastic) for effect in found.model.effects):
+    if not any(isinstance(effect, Elastic) for effect in found.model.effects):
+        return []
+    place = [p for p in found.model.parameters if p.effect.name == "force_point"]
+    if place and not said.fit_payload:
+        at = zip(said.payload_point, place, strict=True)
+        told = ", ".join(
+            f"{1e3 * (there + p.internal):.3g} ± {1e3 * (p.internal_std or 0.0):.2g}"
+            for there, p in at
+        )
+        return [
+            "The file does not say where the payload hangs; that its mass differs tells it: its "
+            f"centre lies at ({told}) mm in {found.model.robot.tool_frame}."
+        ]
+    if place or any(effect.name == "payload" for effect in found.model.effects):
         return []
     return [
         "Where the payload hangs is not stated: it is taken to be the origin of "

@@ -26,6 +26,19 @@ def _point_entry(xyz: Array, *, fit: bool = False) -> dict[str, Any]:
     return {**entry, "fit": True} if fit else entry
 
 
+def _acts(draft: Draft, where: str) -> str:
+    """Where the load is taken to act, as a sentence with a blank before it."""
+    if draft.loads.payload is not None:
+        return (
+            " Where the payload hangs is not known: where masses differ, 'identify' and 'explain' "
+            "find it; else write the centre of its mass as payload.point into the YAML file."
+        )
+    return (
+        f" The load is taken to act {where}; where else it does is what force.point in the YAML "
+        "file says."
+    )
+
+
 def settings_for(
     draft: Draft,
     mode: Mode,
@@ -47,9 +60,8 @@ def settings_for(
     said = "The marker and the load sit at the origin of the tool frame."
     if several and not known:
         said = (
-            "Where the markers sit is not known; the fit finds the place of each. The load is "
-            "taken to act at the origin of the tool frame; elsewhere it is what force.point or "
-            "payload.point in the YAML file says."
+            "Where the markers sit is not known; the fit finds the place of each."
+            f"{_acts(draft, 'at the origin of the tool frame')}"
             if draft.loads.taken
             else "Where the markers sit is not known; the fit finds the place of each."
         )
@@ -71,10 +83,7 @@ def settings_for(
             "positions."
         )
         if draft.loads.taken and not sensed:
-            said += (
-                " The load is taken to act there, too; where else it does is what force.point or "
-                "payload.point in the YAML file says."
-            )
+            said += _acts(draft, "there, too")
     elif mode == "positions":
         said = "Where the marker sits is not known; the fit finds it."
     places = draft.markers[1]
@@ -99,7 +108,7 @@ def settings_for(
         settings["position"] = {"frame": "base" if registered else "unknown"}
         if any(header in QUATERNION for header, _ in draft.other):
             settings["rotation"] = {"axes": "target"}
-        if draft.loads.payload is not None:
+        if draft.loads.payload is not None and told.point is not None:
             settings["payload"] = {"point": _point_entry(xyz)}
     else:
         zero = {"zero": draft.sheet.zero} if mode == "load pairs" else {}
