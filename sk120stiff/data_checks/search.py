@@ -19,7 +19,7 @@ from sk120stiff.data_checks.from_a_row_on import from_a_row_on
 from sk120stiff.data_checks.passive import Passive, passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
 from sk120stiff.data_checks.slips import floor, floors, of_axes, of_joints, of_rows, sign_of
-from sk120stiff.data_checks.turned_axes import by_any_angle, quarter_turns
+from sk120stiff.data_checks.turned_axes import by_any_angle, quarter_turns, two_zeros
 from sk120stiff.errors import ToolkitError
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
@@ -205,7 +205,7 @@ def _turned(start: Tried) -> tuple[Tried | None, Correction | None]:
 
 
 def _joints_together(start: Tried) -> Tried | None:
-    """Signs of several joints, and one joint against the floor: a controller's own convention.
+    """Signs of several joints, one joint against the floor, two zeros: a controller's convention.
 
     Of the conventions that do about as well, the one that changes least; None: none is needed.
     """
@@ -218,6 +218,8 @@ def _joints_together(start: Tried) -> Tried | None:
         conventions = [tuple(signs), *((one, *signs) for one in bent)]
         # One correction alone was tried before.
         tried += [_all_of(each, few.sheet) for each in conventions if len(each) > 1]
+    # An arm that stands upright at zero, and one that lies stretched there, differ at two joints.
+    tried += [_all_of(pair, few.sheet) for pair in two_zeros(few.sheet)]
     good = [each for each in tried if each is not None and _clearly(few, each, CLEARER_TOGETHER)]
     best = min((each.left for each in good), default=0.0)
     near = [each for each in good if each.left < 1.1 * best]

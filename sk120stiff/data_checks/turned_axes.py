@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import combinations, product
+from typing import Literal
 
 import numpy as np
 
@@ -25,9 +27,43 @@ def quarter_turns(sheet: Sheet) -> Iterator[Correction]:
     for quarter in QUARTERS:
         for both in _turned_by(sheet):
             yield turned(quarter * np.pi / 2, both=both)
-    for k, slides in enumerate(sheet.robot.prismatic):
-        for quarter in () if slides else QUARTERS:
-            yield _zero(sheet, k, (quarter + 1) % 4 - 1)
+    for axis in range(2):
+        yield _half_about(axis, "displacement")
+        yield _half_about(axis, "force")
+    for zeros in _zeros(sheet):
+        yield from zeros
+
+
+def two_zeros(sheet: Sheet) -> Iterator[tuple[Correction, Correction]]:
+    """Zeros of two joints that are off by quarters of a turn each."""
+    for one, other in combinations(_zeros(sheet), 2):
+        yield from product(one, other)
+
+
+def _zeros(sheet: Sheet) -> list[list[Correction]]:
+    """Of every joint that turns, its zero off by quarters of a turn."""
+    return [
+        [_zero(sheet, k, (quarter + 1) % 4 - 1) for quarter in QUARTERS]
+        for k, slides in enumerate(sheet.robot.prismatic)
+        if not slides
+    ]
+
+
+def _half_about(axis: int, what: Literal["displacement", "force"]) -> Correction:
+    """Displacements, or loads, in axes turned by half a turn about x or y: their z points down."""
+    signs = np.where(np.arange(3) == axis, 1.0, -1.0)
+    names = [f"{what[0]}{name}" for k, name in enumerate("xyz") if k != axis]
+    said = (
+        f"the {what} looks stated in axes turned by 180 deg about {'xy'[axis]}, with z pointing "
+        "down"
+    )
+
+    def mend(sheet: Sheet) -> Sheet:
+        if what == "displacement":
+            return replace(sheet, displacement=sheet.displacement * signs)
+        return replace(sheet, wrench=sheet.wrench * np.tile(signs, 2))
+
+    return Correction(said, f"Negate the columns {names[0]} and {names[1]}.", mend)
 
 
 def by_any_angle(sheet: Sheet, left: Callable[[Correction], float]) -> list[Correction]:

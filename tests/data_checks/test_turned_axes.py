@@ -68,6 +68,37 @@ def test_a_zero_that_is_quarters_off(k: int, degrees: int) -> None:
     assert find_slip(known.robot, mended) is None
 
 
+@pytest.mark.parametrize(("one", "other"), [((1, 90), (2, -90)), ((1, -90), (3, 90))])
+def test_two_zeros_that_are_quarters_off(one: tuple[int, int], other: tuple[int, int]) -> None:
+    """As between a controller whose arm lies at zero and a URDF whose arm stands."""
+    known = ur5()
+    off = np.zeros(6)
+    for k, degrees in (one, other):
+        off[k] = np.radians(degrees)
+    found = find_slip(known.robot, replace(known.readings, joints=known.readings.joints - off))
+    assert found is not None and found.after > 0.98
+    for k, degrees in (one, other):
+        assert f"the zero of {known.robot.actuated[k]} seems to be {degrees} deg off" in found.said
+
+
+@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("what", ["displacement", "force"])
+def test_axes_whose_z_points_down(arm: str, axis: int, what: str) -> None:
+    known = ARMS[arm]()
+    signs = np.where(np.arange(3) == axis, 1.0, -1.0)
+    data = known.readings
+    assert data.displacement is not None
+    wrong = (
+        replace(data, displacement=data.displacement * signs)
+        if what == "displacement"
+        else replace(data, wrench=data.wrench * np.tile(signs, 2))
+    )
+    found = find_slip(known.robot, wrong)
+    assert found is not None and found.after > 0.98
+    assert "by 180 deg" in found.said or "Two wrong signs are half a turn" in found.remedy
+
+
 def test_explain_stops() -> None:
     known = ur5()
     with pytest.raises(Refusal, match=r"turned by 180 deg about z"):
