@@ -11,6 +11,7 @@ from sk120stiff.identify.checks.lack_of_fit import lack_of_fit
 from sk120stiff.identify.checks.null_space import weak_directions
 from sk120stiff.identify.checks.yardstick import yardstick
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.robust import far_off
 from sk120stiff.measurements import Measurements
 
 LEAST_CORRELATION = 0.3  # worth a line
@@ -30,6 +31,7 @@ def fit_report(fit: Fit, *, profile: Sequence[tuple[float, float]] | None = None
         _section("Statistics", _statistics(fit)),
         _section("Noise", _noise(fit)),
         _section("Trusted less than the others", _down_weighted(fit)),
+        _section("Far off the others", _far_off(fit)),
         _section("What these readings do not tell", weak_directions(fit)),
         _section(f"Correlations beyond {LEAST_CORRELATION}", _correlations(fit)),
     ]
@@ -117,6 +119,21 @@ def _down_weighted(fit: Fit) -> list[str]:
     if len(rows) > MOST_LINES:
         lines.append(f"... and {len(rows) - MOST_LINES} more.")
     return lines
+
+
+def _far_off(fit: Fit) -> list[str]:
+    rows = far_off(fit)
+    if not len(rows):
+        return []
+    size = np.sqrt(np.nansum(fit.gap**2, axis=1))
+    worst = sorted(rows, key=lambda k: -float(size[k]))[:MOST_LINES]
+    where = [f"{place_of(fit.problem.measurements, int(k))}: {1e6 * size[k]:.3g} µm" for k in worst]
+    count = f"{len(rows)} reading is" if len(rows) == 1 else f"{len(rows)} readings are"
+    return [
+        f"{count} far off what the fit makes of the others, and pull it: --robust trusts such "
+        "readings less, a 0 in a column use leaves them out, and 'explain' sets them aside.",
+        *where,
+    ]
 
 
 def _correlations(fit: Fit) -> list[str]:

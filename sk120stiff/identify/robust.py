@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array, Integers
+from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.problem import Problem
@@ -24,6 +24,8 @@ from sk120stiff.identify.written import with_values
 # By the number of axes that a reading has, from 0 on:
 LIMIT = np.sqrt([0.0, *stats.chi2.ppf(0.99, (1, 2, 3))])  # one clean one in a hundred lies beyond
 MIDDLE = np.array([1.0, *stats.chi2.ppf(0.5, (1, 2, 3))])  # and half of them
+FAR = 6.0  # times the spread of the others, per axis: no smooth cause is so much at one reading
+FEW = 0.125  # share of the readings that may be slips
 ROUNDS = 60  # of reweighting, at most
 SETTLED = 1e-6  # largest change of a weight after which rounds end
 
@@ -85,6 +87,23 @@ def reading_lengths(problem: Problem, gap: Array) -> Array:
     guess_gain = zero / (1.0 + zero * information)
     guess = guess_gain * (sums[1][group] - trust * gap)
     return np.asarray(np.sqrt(((gap - guess) ** 2 / (own + guess_gain)).sum(axis=1)))
+
+
+def far_off(fit: Fit) -> Index:
+    """Readings so far off a least-squares fit, for its other readings, that they must be slips.
+
+    Their share of all is small, or it is no few readings that are wrong.
+    """
+    problem = fit.problem
+    axes = problem.read.sum(axis=1)
+    if problem.weights is not None or fit.degrees_of_freedom < 1:
+        return np.zeros(0, dtype=np.intp)
+    lengths = reading_lengths(problem, fit.gap)
+    scale = _spread(lengths, axes, fit.estimated)
+    if problem.noise.known:
+        scale = max(scale, 1.0)
+    far = np.flatnonzero(lengths > FAR * scale * np.sqrt(axes))
+    return far if len(far) <= FEW * len(axes) else far[:0]
 
 
 def _spread(lengths: Array, axes: Integers, estimated: int) -> float:

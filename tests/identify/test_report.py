@@ -44,3 +44,22 @@ def test_down_weighted_readings_are_listed(springs) -> None:
     assert f"(pose {readings.pose[worst]})" in text
     lines = replace(readings, line=np.arange(2, 34))
     assert f"line {worst + 2} (pose" in fit_report(fit(springs, lines, robust=True))
+
+
+def test_readings_far_off_a_plain_fit_are_named(springs) -> None:
+    readings = readings_of(springs, poses=12, seed=5)
+    spoilt = readings.displacement.copy()
+    spoilt[[7, 30]] += [[6e-4, 0.0, -5e-4], [0.0, 9e-4, 0.0]]
+    found = fit(springs, replace(readings, displacement=spoilt))
+    text = fit_report(found)
+    assert "[[Far off the others]]" in text and "2 readings are far off" in text
+    for row in (7, 30):
+        assert f"reading {row + 1} (pose {readings.pose[row]})" in text
+    for seed in range(10):
+        clean = readings_of(springs, poses=12, seed=seed)
+        assert "Far off" not in fit_report(fit(springs, clean))
+    rocks = springs + effect(springs.robot, "base_rocking")
+    values = rocks.values.copy()
+    values[-2:] = 2e-7
+    lacking = readings_of(rocks.with_values(values), poses=12, seed=3)
+    assert "Far off" not in fit_report(fit(springs, lacking))  # a cause is no slip

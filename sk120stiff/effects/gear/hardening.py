@@ -51,7 +51,10 @@ class GearHardening(GearEffect):
         "q - q_0 = torque / K - k2 * torque * abs(torque) - k3 * torque^3; by direction: torque / K"
         " + c * min(torque, 0)"
     )
-    says: ClassVar[str] = "The gear of {where} gets stiffer as its torque grows."
+    says: ClassVar[str] = (
+        "The gear of {where} is not as stiff under much torque as under little: it hardens or "
+        "softens."
+    )
     axes: ClassVar[str] = "the axis of the joint itself; torque includes the arm's weight"
     also: ClassVar[str] = (
         f"in steps, as data sheets have it: {BELOW}150 in rad/(N*m) is by how much more the gear "
