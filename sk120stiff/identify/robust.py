@@ -25,6 +25,7 @@ from sk120stiff.identify.written import with_values
 LIMIT = np.sqrt([0.0, *stats.chi2.ppf(0.99, (1, 2, 3))])  # one clean one in a hundred lies beyond
 MIDDLE = np.array([1.0, *stats.chi2.ppf(0.5, (1, 2, 3))])  # and half of them
 FAR = 6.0  # times the spread of the others, per axis: no smooth cause is so much at one reading
+NOTHING = 1e-9  # weight of a reading that counts no more
 FEW = 0.125  # share of the readings that may be slips
 ROUNDS = 60  # of reweighting, at most
 SETTLED = 1e-6  # largest change of a weight after which rounds end
@@ -92,18 +93,25 @@ def reading_lengths(problem: Problem, gap: Array) -> Array:
 def far_off(fit: Fit) -> Index:
     """Readings so far off a least-squares fit, for its other readings, that they must be slips.
 
-    Their share of all is small, or it is no few readings that are wrong.
+    The worst first, and the others judged without it: one slip pulls all that share its zero
+    reading. Their share of all is small, or it is no few readings that are wrong.
     """
     problem = fit.problem
     axes = problem.read.sum(axis=1)
     if problem.weights is not None or fit.degrees_of_freedom < 1:
         return np.zeros(0, dtype=np.intp)
-    lengths = reading_lengths(problem, fit.gap)
-    scale = _spread(lengths, axes, fit.estimated)
-    if problem.noise.known:
-        scale = max(scale, 1.0)
-    far = np.flatnonzero(lengths > FAR * scale * np.sqrt(axes))
-    return far if len(far) <= FEW * len(axes) else far[:0]
+    weights, far = np.ones(len(axes)), list[int]()
+    while len(far) <= FEW * len(axes):
+        lengths = reading_lengths(problem.with_weights(weights), fit.gap)
+        scale = _spread(lengths, axes, fit.estimated)
+        limit = FAR * (max(scale, 1.0) if problem.noise.known else scale) * np.sqrt(axes)
+        share = np.where(weights < 1.0, 0.0, lengths / np.maximum(limit, 1e-300))
+        worst = int(share.argmax())
+        if share[worst] <= 1.0:
+            return np.array(sorted(far), dtype=np.intp)
+        far.append(worst)
+        weights[worst] = NOTHING
+    return np.zeros(0, dtype=np.intp)
 
 
 def _spread(lengths: Array, axes: Integers, estimated: int) -> float:
