@@ -21,6 +21,7 @@ from sk120stiff.measurements.placing_slips import (
     shifted_at,
     signs_and_turns,
     slips,
+    to_the_floor,
     with_sums,
 )
 from sk120stiff.measurements.registration import Registration
@@ -243,6 +244,7 @@ def _refuse_slips(
     _refuse_moved(cloud, told, least, readings, rows)
     ways = [
         (signs_and_turns, "other zeros or signs of joints"),
+        (to_the_floor, "other zeros, signs or sums of joints"),
         (with_sums, "other zeros, signs or sums of joints"),
     ]
     if found.rms > FITS * spread:  # what is less a fit finds, and says of it that it is an error

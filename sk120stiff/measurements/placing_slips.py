@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, permutations
+from itertools import combinations, permutations, product
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import listed
 from sk120stiff.measurements.angle_units import mixed
 from sk120stiff.measurements.cloud import Cloud
@@ -23,6 +23,7 @@ WHOLE = 2  # joints of whose ways all are kept, since the wrist tells little of 
 KEPT = 32  # of the ways of the joints so far that are followed
 SLACK = 0.02  # rad or m; a joint may go so far beyond what its URDF states
 NEARLY = 1e-3  # of what is left, by which a marker may still move where ways are compared
+PARALLEL = 0.999  # cosine between the axes of joints that turn in one plane
 ZEROS = np.linspace(-np.pi, np.pi, 72, endpoint=False)  # rad; zeros of a joint tried first
 SAGGED = np.radians(0.25)  # rad from a quarter turn that sag makes of one
 FINE = 1e-5  # rad, to which one is found
@@ -200,31 +201,56 @@ class Convention:
         return {name: expression for name, expression in told if name != expression}
 
 
-def signs_and_turns(cloud: Cloud) -> Convention:
+def signs_and_turns(cloud: Cloud, *, floor: bool = False) -> Convention:
     """The best signs and zeros (quarter turns), of all joints together, from the base outwards.
 
     One joint mended alone need not bring anything where others are wrong too, as between a
     controller's joints and those of a URDF. The nearest few ways of the joints so far are kept
     (beam search), the wrist as it stands until its turn comes. Where the first joint and the last
     have their zeros, tracker and marker take on.
+
+    Args:
+        cloud: Positions and joint columns.
+        floor: A joint that turns in one plane with the one before it may be measured against the
+            floor, too.
     """
     n = cloud.a.shape[1]
     turning = ~np.array(cloud.robot.prismatic)
-    ways: list[tuple[Array, Array]] = [(np.ones(n), np.zeros(n))]
+    sums = _in_one_plane(cloud) if floor else np.zeros(n, dtype=bool)
+    ways: list[tuple[Array, Array]] = [(np.eye(n), np.zeros(n))]
     for k in range(n):
         turns = (0, 1, -1, 2) if turning[k] and 0 < k < n - 1 else (0,)
+        others = (0.0, 1.0, -1.0) if sums[k] else (0.0,)
         wider = []
-        for signs, zero in ways:
-            for sign in (1.0, -1.0):
-                for turn in turns:
-                    own = signs.copy(), zero.copy()
-                    own[0][k], own[1][k] = sign, turn * np.pi / 2
-                    rms = _left(cloud, np.diag(own[0]), own[1])
-                    wider.append((float(f"{rms:.3g}"), oddness(cloud, *own), own))
+        for (share, zero), sign, turn, other in product(ways, (1.0, -1.0), turns, others):
+            own = share.copy(), zero.copy()
+            own[0][k, k], own[1][k] = sign, turn * np.pi / 2
+            if other:
+                own[0][k, k - 1] = other
+            rms = _left(cloud, *own)
+            wider.append((float(f"{rms:.3g}"), oddness(cloud, *own), own))
         wider.sort(key=lambda item: item[:2])
         ways = [own for *_, own in (wider if k < WHOLE else wider[:KEPT])]
-    share, zero = np.diag(ways[0][0]), ways[0][1]
-    return Convention(_left(cloud, share, zero), share, zero)
+    return Convention(_left(cloud, *ways[0]), *ways[0])
+
+
+def to_the_floor(cloud: Cloud) -> Convention:
+    """The best signs, zeros and sums with the joint before, see `signs_and_turns`."""
+    return signs_and_turns(cloud, floor=True)
+
+
+def _in_one_plane(cloud: Cloud) -> Mask:
+    """(n,) joints that turn about the direction about which the one before them turns."""
+    robot, n = cloud.robot, cloud.a.shape[1]
+    turned = robot.screws(cloud.a[:1]).axes[0]
+    names = list(robot.mechanism().chain.names)
+    axes = [turned[names.index(name)] if name in names else None for name in robot.actuated]
+    out = np.zeros(n, dtype=bool)
+    for k in range(1, n):
+        one, two = axes[k - 1], axes[k]
+        turns = not (robot.prismatic[k - 1] or robot.prismatic[k])
+        out[k] = turns and one is not None and two is not None and abs(one @ two) > PARALLEL
+    return out
 
 
 def one_zero(cloud: Cloud) -> Convention:
@@ -258,16 +284,21 @@ def _left(cloud: Cloud, share: Array, zero: Array) -> float:
     return moved.placed(fit_marker=True, until=NEARLY)[0].rms
 
 
-def oddness(cloud: Cloud, signs: Array, zero: Array) -> tuple[int, int]:
+def oddness(cloud: Cloud, share: Array, zero: Array) -> tuple[int, int]:
     """Joints beyond their limits, and changes: half a turn counts as two quarters.
 
     A joint turned over, and the next with the other sign, place a marker as well as neither.
+
+    Args:
+        cloud: Positions and joint columns.
+        share, zero: See `Convention`.
     """
-    a = cloud.a * signs + zero
+    a = cloud.a @ share.T + zero
     low, high = cloud.robot.lower - SLACK, cloud.robot.upper + SLACK
     beyond = int(((a < low) | (a > high)).any(axis=0).sum())
     quarters = np.abs(zero) / (np.pi / 2)
-    return beyond, int((signs < 0.0).sum() + round(float(quarters.sum())))
+    changes = (np.diag(share) < 0.0).sum() + (share != np.diag(np.diag(share))).sum()
+    return beyond, int(changes + round(float(quarters.sum())))
 
 
 def with_sums(cloud: Cloud) -> Convention:

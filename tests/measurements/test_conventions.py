@@ -7,7 +7,12 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.measurements.cloud import Cloud
-from sk120stiff.measurements.placing_slips import Convention, oddness, signs_and_turns
+from sk120stiff.measurements.placing_slips import (
+    Convention,
+    oddness,
+    signs_and_turns,
+    to_the_floor,
+)
 from sk120stiff.robot import Robot
 
 NOISE = 1e-3  # m
@@ -58,10 +63,29 @@ def test_joints_are_told_by_the_names_of_columns():
 
 def test_joints_beyond_their_limits_and_half_turns_are_odd():
     robot = replace(sk.load_robot("ur5e"), lower=np.full(6, -2.0), upper=np.full(6, 2.0))
-    plain, nothing = np.ones(6), np.zeros(6)
-    cloud = cloud_of(robot, plain, nothing, seed=1)
+    plain, nothing = np.eye(6), np.zeros(6)
+    cloud = cloud_of(robot, np.ones(6), nothing, seed=1)
     turned = nothing.copy()
     turned[4] = np.pi
     assert oddness(cloud, plain, nothing) == (0, 0)
     assert oddness(cloud, plain, turned) == (1, 2)
     assert oddness(cloud, -plain, nothing) == (0, 6)
+    coupled = plain.copy()
+    coupled[2, 1] = -1.0
+    assert oddness(cloud, coupled, nothing)[1] == 1
+
+
+@pytest.mark.parametrize("own", [1.0, -1.0])
+def test_a_joint_measured_against_the_floor_beside_a_wrist_the_other_way_round(own: float):
+    """As FANUC's controllers have it: neither alone brings anything."""
+    robot = sk.load_robot("ur5e")
+    signs = np.array([1.0, 1.0, 1.0, -1.0, 1.0, -1.0])
+    plain = cloud_of(robot, signs, np.zeros(6), seed=2)
+    columns = plain.a.copy()
+    columns[:, 2] = own * (plain.a[:, 2] + plain.a[:, 1])  # so the joint is own * column - J2
+    found = to_the_floor(replace(plain, a=columns))
+    assert found.rms < 3.0 * NOISE
+    names = [f"J{k}" for k in range(1, 7)]
+    told = found.expressions(names)
+    assert told[2] == ("-J2 + J3" if own > 0.0 else "-J2 - J3")
+    assert [told[k] for k in (0, 1, 3, 4, 5)] == ["J1", "J2", "-J4", "J5", "-J6"]

@@ -13,12 +13,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
+from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.layout import (
     layout_of,
     of_other_columns,
     shaped,
     sheet_by_order,
 )
+
+MARKER = 3  # numbers that say where it sits
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,8 @@ class JointTable:
         count, named, _ = shaped(source)
         if named != ("tag" in self.columns) or count != n + 6 or of_other_columns(source):
             return NO
+        if "tcp x" in self.columns and not _few_places(source):
+            return NO  # an orientation, more likely
         return Guess(0.5, f"{'a tag and ' * named}{count} numbers in a row: {self.row}")
 
     def read(self, source: Source) -> Sheet:
@@ -57,6 +62,12 @@ class JointTable:
         columns = _with_joints(self.columns, [f"q{k + 1}" for k in range(len(source.actuated))])
         units = {"length": "mm", "angle": "deg"}
         return sheet_by_order(source, columns, self.title, self.sniff(source).why, units)
+
+
+def _few_places(source: Source) -> bool:
+    """Do the last three numbers of the rows repeat, as the places of a few markers do?"""
+    rows = [row for row in source.grid.rows if len(row) >= MARKER and is_number(row[-1])]
+    return len({row[-MARKER:] for row in rows}) <= max(1, len(rows) // 2)
 
 
 def _with_joints(words: Sequence[str], joints: Sequence[str]) -> tuple[str, ...]:
