@@ -7,6 +7,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff import Model, base_model, load_robot
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.aliases import exact_aliases
 from sk120stiff.measurements import Measurements, NoiseStatement
 from tests.explain.readings import answered, hidden
@@ -37,6 +38,20 @@ def with_offsets(*causes: Cause, factor: float = 1.0, loads: int = 6) -> Measure
         zero="separate",
         noise=NoiseStatement(sigma=SIGMA / factor),
     )
+
+
+def test_offsets_that_go_with_the_order_of_rows_may_be_a_drift(springs: Model) -> None:
+    """Without a column of order no drift is sought; whoever took the readings knows theirs."""
+    plain = replace(with_offsets(), order=None, time=None)
+    drift = np.array([6e-6, 0.0, -8e-6]) * plain.pose_index[:, None]
+    steady = answered(springs, replace(plain, displacement=plain.displacement + drift))
+    assert "zero_offset:tracker" in {f.effect.id for f in steady.findings}
+    said = next_step(steady)
+    assert "go steadily with the order of the rows" in said and "column order (1, 2, 3" in said
+    chance = next_step(answered(springs, plain))
+    assert "a drift was not looked for" in chance and "steadily" not in chance
+    known = replace(plain, order=np.arange(1.0, plain.n_readings + 1.0))
+    assert "column order" not in next_step(answered(springs, known))
 
 
 @pytest.mark.parametrize("factor", [1.0, 1.4])

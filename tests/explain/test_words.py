@@ -160,7 +160,8 @@ def test_suspects_are_told_with_what_they_gain() -> None:
 def test_what_brings_the_most_has_its_error_and_all_its_names(others: tuple[str, ...]) -> None:
     named = (
         SimpleNamespace(
-            effect=SimpleNamespace(id="a:b", bends_a_spring=False), alternatives=others
+            effect=SimpleNamespace(id="a:b", bends_a_spring=False, random_effects=False),
+            alternatives=others,
         ),
     )
     told = next_step(Answered(findings=named, budget=(Share("a:b", 4.61e-4, 1.35e-4),)))
@@ -184,7 +185,9 @@ def test_an_instrument_is_no_part_of_an_arm_to_be_mended(
 ) -> None:
     named = (
         SimpleNamespace(
-            effect=SimpleNamespace(id=own, bends_a_spring=own.startswith("gear_hardening")),
+            effect=SimpleNamespace(
+                id=own, bends_a_spring=own.startswith("gear_hardening"), random_effects=False
+            ),
             alternatives=others,
         ),
     )

@@ -8,6 +8,7 @@ import numpy as np
 
 from sk120stiff.data_checks import place_of
 from sk120stiff.errors import listed
+from sk120stiff.explain.answer.drifting import steady_offsets
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
 from sk120stiff.explain.localise.changes import changed_at
@@ -34,7 +35,12 @@ def next_step(answer: Explanation) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
     return " ".join(
-        [*said[answer.verdict](answer), *_of_the_beyond(answer), *_of_the_slips(answer)]
+        [
+            *said[answer.verdict](answer),
+            *filter(None, [steady_offsets(answer)]),
+            *_of_the_beyond(answer),
+            *_of_the_slips(answer),
+        ]
     )
 
 
