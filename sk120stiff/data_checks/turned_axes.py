@@ -16,17 +16,19 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks.correction import Correction
 from sk120stiff.data_checks.sheet import Sheet
+from sk120stiff.measurements.data import Frame
 
 QUARTERS = (1, 2, 3)  # of a turn, as frames and conventions of controllers differ
 ROUNDING = 1e-12  # of a cosine
+What = Literal["both", "d", "f"]  # displacements and loads, or one of them
 COARSE, FINE = np.radians(15.0), np.radians(0.5)  # steps in which a turn is looked for
 
 
 def quarter_turns(sheet: Sheet) -> Iterator[Correction]:
     """Axes and zeros that are off by quarters of a turn."""
     for quarter in QUARTERS:
-        for both in _turned_by(sheet):
-            yield turned(quarter * np.pi / 2, both=both)
+        for what in _turned_by(sheet):
+            yield turned(quarter * np.pi / 2, what, sheet.force_frame)
     for axis in range(2):
         yield _half_about(axis, "displacement")
         yield _half_about(axis, "force")
@@ -67,53 +69,61 @@ def _half_about(axis: int, what: Literal["displacement", "force"]) -> Correction
 
 
 def by_any_angle(sheet: Sheet, left: Callable[[Correction], float]) -> list[Correction]:
-    """The best turn of both, and of the displacements alone, from coarse to fine.
+    """The best turn of both, and of displacements and of loads alone, from coarse to fine.
 
     Args:
         sheet: The readings as they stand.
         left: What is left with a correction.
     """
-    if np.isnan(sheet.measured[:, :2]).any():
-        return []
+    frame = sheet.force_frame
+    read = not np.isnan(sheet.measured[:, :2]).any()
     out = []
-    for both in _turned_by(sheet):
+    for what in _turned_by(sheet) if read else ():
         angle, step = 0.0, COARSE
         tried = np.arange(-np.pi, np.pi, step)
         while step >= FINE:
-            angle = float(min(tried, key=lambda each: left(turned(each, both=both))))
+            angle = float(min(tried, key=lambda each: left(turned(each, what, frame))))
             step *= 0.5
             tried = np.array([angle - step, angle, angle + step])
-        out.append(turned(angle, both=both))
+        out.append(turned(angle, what, frame))
     return out
 
 
-def turned(angle: float, *, both: bool) -> Correction:
-    """Displacements, or loads too, are stated in axes turned by an angle about the base's z."""
+def turned(angle: float, what: What, frame: Frame) -> Correction:
+    """Displacements, loads, or both are stated in axes turned by an angle about the base's z.
+
+    Loads in axes of the tool (`frame`) about the tool's: a sensor may be screwed on turned.
+    """
     degrees = 180.0 - round((180.0 - float(np.degrees(angle))) % 360.0, 1)
-    what = "force and displacement look" if both else "the displacement looks"
-    said = f"{what} stated in axes that are turned by {degrees:g} deg about z of the base frame"
-    remedy = (
-        "Choose the base frame that they are stated in (base_frame, --base), or turn them by as "
-        "much."
-        if both
-        else "Turn the displacement by as much, into axes of the base frame."
+    looks = {"both": "force and displacement look", "d": "the displacement looks"}
+    said = (
+        f"{looks.get(what, 'the force looks')} stated in axes that are turned by {degrees:g} deg "
+        f"about z of the {'base' if what != 'f' else frame} frame"
     )
+    remedy = {
+        "both": "Choose the base frame that they are stated in (base_frame, --base), or turn them "
+        "by as much.",
+        "d": "Turn the displacement by as much, into axes of the base frame.",
+        "f": f"Turn the force by as much, into axes of the {frame} frame.",
+    }
 
     def mend(sheet: Sheet) -> Sheet:
-        mended = replace(sheet, displacement=_about_z(sheet.displacement, angle))
-        if not both:
-            return mended
-        wrench = [_about_z(sheet.wrench[:, part], angle) for part in (slice(3), slice(3, 6))]
-        return replace(mended, wrench=np.concatenate(wrench, axis=1))
+        mended = sheet
+        if what != "f":
+            mended = replace(mended, displacement=_about_z(sheet.displacement, angle))
+        if what != "d":
+            wrench = [_about_z(sheet.wrench[:, part], angle) for part in (slice(3), slice(3, 6))]
+            mended = replace(mended, wrench=np.concatenate(wrench, axis=1))
+        return mended
 
-    return Correction(said, remedy, mend)
+    return Correction(said, remedy[what], mend)
 
 
-def _turned_by(sheet: Sheet) -> tuple[bool, ...]:
+def _turned_by(sheet: Sheet) -> tuple[What, ...]:
     """What may be turned about z of the base: what is stated in its axes."""
     if sheet.displacement_frame != "base":
-        return ()
-    return (True, False) if sheet.force_frame == "base" else (False,)
+        return ("f",)
+    return ("both", "d", "f") if sheet.force_frame == "base" else ("d", "f")
 
 
 def _about_z(vectors: Array, angle: float) -> Array:

@@ -16,6 +16,7 @@ from sk120stiff.measurements import Measurements
 from tests.data_checks.readings import ARMS, ur5
 
 BOTH = "force and displacement look stated in axes that are turned by"
+FORCE = "the force looks stated in axes that are turned by"
 ALONE = "the displacement looks stated in axes that are turned by"
 
 
@@ -53,6 +54,18 @@ def test_displacements_that_are_turned(degrees: float) -> None:
     assert found is not None
     assert abs(told(found.said, ALONE) - degrees) < 1.0
     assert "Turn the displacement by as much" in found.remedy
+
+
+@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize("degrees", [63.0, -40.0])
+def test_forces_that_are_turned(arm: str, degrees: float) -> None:
+    """As those in axes of a tracker that stands level, beside displacements in base axes."""
+    known = ARMS[arm]()
+    both = turned(known.readings, degrees, loads=True)
+    found = find_slip(known.robot, replace(both, displacement=known.readings.displacement))
+    assert found is not None and found.after > 0.98
+    assert abs(told(found.said, FORCE) - degrees) < 1.0
+    assert "Turn the force by as much" in found.remedy
 
 
 @pytest.mark.parametrize(("k", "degrees"), [(2, 90), (3, 180), (4, -90)])
