@@ -98,7 +98,7 @@ def path_map(position: Array, away: Array, worst: int) -> Figure:
             ends = position + scale * away
             lines = np.stack([position, ends], axis=1)[every]
             for line in lines:
-                panel.plot(1e3 * line[:, a], 1e3 * line[:, b], color=palette.BEFORE, linewidth=0.8,
+                panel.plot(1e3 * line[:, a], 1e3 * line[:, b], color=palette.GAP, linewidth=0.8,
                            alpha=0.7, zorder=2)  # fmt: skip
             drawn = panel.scatter(1e3 * position[:, a], 1e3 * position[:, b], c=size, s=16,
                                   cmap=soft_to_stiff().reversed(), zorder=3)  # fmt: skip
