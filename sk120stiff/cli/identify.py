@@ -268,6 +268,8 @@ def _parts(
     if lines:
         columns = ["model", "values", "fitted", "held out", "±", "loss", "±", "ΔAIC", "ΔBIC", ""]
         parts.append(table("Models [µm rms per axis]", columns, [_cells(x) for x in lines]))
+    if found.exceeds or yardstick(found).sigma is None:  # its errors rest on the model
+        parts.append("Whether something is missing is what 'sk120stiff explain' looks for.")
     if out is not None:
         parts.append(f"Written to {out}.")
     return parts
