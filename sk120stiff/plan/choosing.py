@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.plan.design import Design, d_optimal, random_choice, refuse_count, well_spread
 from sk120stiff.plan.discriminate import rivalry
-from sk120stiff.plan.pool import Pool
+from sk120stiff.plan.pool import Pool, same_pose
 
 DRAWS = 50  # random and well-spread choices that a plan is held against
 
@@ -38,6 +39,13 @@ class Chosen:
     untold: Mapping[str, str] = field(default_factory=dict)
     evidence: tuple[float, float] | None = None
     design: Design | None = None
+
+    def without(self, lost: Sequence[Array]) -> Chosen:
+        """The same without some poses (n,)."""
+        a = self.pool.load_cases.a
+        rows = [k for k in self.rows if not any(same_pose(a[k], other) for other in lost)]
+        design = None if self.design is None else self.design.of_rows(rows)
+        return replace(self, rows=rows, design=design)
 
     def gains(self, seed: int) -> tuple[float, float]:
         """Median gain over random and over well-spread choices of the pool."""

@@ -14,7 +14,7 @@ cover the range of motion of all the active joints", loaded along orthogonal axe
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -52,6 +52,13 @@ class Design:
     gains: Array
     known: Array
     interest: Index
+
+    def of_rows(self, rows: Sequence[int]) -> Design:
+        """The same with other rows of the pool."""
+        before, total = (self.known + self.gains[list(k)].sum(axis=0) for k in (self.rows, rows))
+        grown = np.diag(np.linalg.inv(total)) / np.diag(np.linalg.inv(before))
+        std = self.std * np.sqrt(grown[self.interest])
+        return replace(self, rows=tuple(rows), std=std, worth=self.worth_of(rows))
 
     def worth_of(self, rows: Sequence[int]) -> float:
         """Worth of another choice from the same pool."""

@@ -26,7 +26,7 @@ from sk120stiff.plan.discriminate import Rivalry
 from sk120stiff.plan.efforts import poses_held
 from sk120stiff.plan.places import Places
 from sk120stiff.plan.planned import LITTLE, POSES, TOO_LITTLE, Expected, Plan, drivable
-from sk120stiff.plan.pool import Pool, poses_in
+from sk120stiff.plan.pool import Pool, poses_in, same_pose
 from sk120stiff.plan.positions_pool import (
     PositionsPool,
     labels_of,
@@ -163,7 +163,7 @@ def plan_positions(
     poses = int(group.max()) + 1 if count is None else count
 
     def choose(banned: Sequence[Array]) -> tuple[Chosen, Measurements]:
-        gone = [(pool.pool.load_cases.a == each).all(axis=1) for each in banned]
+        gone = [same_pose(pool.pool.load_cases.a, each) for each in banned]
         left = np.flatnonzero(~np.any(gone, axis=0)) if gone else np.arange(pool.pool.count)
         own = np.unique(group[left], return_inverse=True)[1].reshape(-1)
         size = min(poses, int(own.max()) + 1) if count is None else poses

@@ -28,7 +28,8 @@ POSES = 400  # to choose from
 DIRECTIONS = 12  # of the load at each of them
 USUAL = 1e-5  # m; standard uncertainty of a reading of which nobody said it
 LITTLE = 0.5  # of a variance: readings that leave more of it tell less than was plausible before
-MOST_LEFT_OUT = 5  # poses to which no way is found, before that is the answer
+MOST_ROUNDS = 3  # of other poses in the place of those to which no way is found
+MOST_LOST = 1.0 / 3.0  # of the poses of a plan: where more are cut off, that is the answer
 
 
 @dataclass(frozen=True)
@@ -240,21 +241,41 @@ def drivable(
         Refusal: No free way leads to several of them.
     """
     banned: list[Array] = []
-    while True:
+    for last in (*[False] * (MOST_ROUNDS - 1), True):
         chosen, found = choose(banned)
         if not drive:
             return chosen, found, None, 0
+        ordered, way, lost = _reached(found, robot, cell, seed)
+        banned += lost
+        if not lost or last:
+            break
+    if lost:
+        chosen = chosen.without(lost)
+    if not named:
+        ordered = replace(ordered, pose=numbered(ordered.pose))
+    return chosen, ordered, way, len(banned)
+
+
+def _reached(
+    found: Measurements, robot: Robot, cell: Cell, seed: int
+) -> tuple[Measurements, Route, list[Array]]:
+    """Readings in the order of a free way, and the poses (n,) to which none was found.
+
+    Raises:
+        NoWay: To a third of them.
+    """
+    lost: list[Array] = []
+    most = max(1, int(MOST_LOST * len(found.poses)))
+    while True:
         labels = found.poses
         try:
-            ordered, way = in_order(found, robot, cell, seed)
+            return *in_order(found, robot, cell, seed), lost
         except NoWay as error:
-            if len(banned) == MOST_LEFT_OUT:
+            if len(lost) == most:
                 raise
-            banned.append(found.joints[found.pose.index(labels[error.pose])])
-        else:
-            if not named:
-                ordered = replace(ordered, pose=numbered(ordered.pose))
-            return chosen, ordered, way, len(banned)
+            trapped = labels[error.pose]
+            lost.append(found.joints[found.pose.index(trapped)])
+            found = found.select(np.flatnonzero([own != trapped for own in found.pose]))
 
 
 def _remarks(places: Places, pool: Pool, unheld: Sequence[str]) -> tuple[str, ...]:

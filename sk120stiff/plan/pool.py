@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, load_case
 from sk120stiff.errors import Refusal
 from sk120stiff.plan.cell import Cell
@@ -19,6 +19,7 @@ from sk120stiff.plan.feasible import feasible, unfolded
 from sk120stiff.plan.surroundings import assumptions
 from sk120stiff.robot import Robot
 
+TYPED = 2e-6  # rad or m: joint values of a plan are rounded to 1e-4 deg
 REACH_OF_UNLIMITED = np.pi  # rad; a joint without limits is used over one turn
 REACH_OF_UNLIMITED_SLIDE = 0.5  # m
 SHARE_OF_RANGE = 0.9  # the ends of the range are left out
@@ -46,12 +47,17 @@ class Pool:
 
     def without(self, a: Array) -> Pool:
         """The candidates that do not stand at a pose (n,)."""
-        return Pool(self.load_cases.rows((self.load_cases.a != a).any(axis=1)), self.remarks)
+        return Pool(self.load_cases.rows(~same_pose(self.load_cases.a, a)), self.remarks)
 
     @cached_property
     def pose(self) -> Index:
         """(M,) index of each candidate's pose."""
         return np.unique(self.load_cases.a, axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def same_pose(a: Array, other: Array) -> Mask:
+    """Are poses (..., n) another one (n,), as people type joint values?"""
+    return np.asarray(np.abs(a - other).max(axis=-1) < TYPED)
 
 
 def random_pool(

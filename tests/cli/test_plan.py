@@ -268,8 +268,27 @@ def test_a_pose_to_which_no_way_leads_gives_way_to_another(run, tmp_path: Path, 
     way = tmp_path / "way.script"
     outcome = run("plan", "--model", MODEL, "--count", "3", *FEW, "--program", str(way), "--json")
     assert outcome.code == 0, outcome.stderr
-    assert outcome.document["route"]["left_out"] == 1 and len(asked[1]) == 3
-    assert not (asked[1] == asked[0][1]).all(axis=1).any()
+    assert outcome.document["route"]["left_out"] == 1 and [len(a) for a in asked] == [3, 2, 3]
+    assert not (asked[-1] == asked[0][1]).all(axis=1).any()
+
+
+def test_where_other_poses_are_cut_off_too_there_are_fewer(run, tmp_path: Path, monkeypatch):
+    from sk120stiff.plan import planned as command
+
+    drive = command.in_order
+
+    def blocked(plan, robot, cell, seed):
+        if len(plan.poses) == 6:
+            raise NoWay(robot.name, 0, 1, 1)
+        return drive(plan, robot, cell, seed)
+
+    monkeypatch.setattr(command, "in_order", blocked)
+    made, way = tmp_path / "plan.csv", tmp_path / "way.script"
+    words = ("--model", MODEL, "--count", "6", *FEW, "--program", str(way), "--out", str(made))
+    outcome = run("plan", *words)
+    assert outcome.code == 0, outcome.stderr
+    assert "1 pose fewer than was asked for" in outcome.stdout
+    assert read_measurements(made).poses == ("p1", "p2", "p3", "p4", "p5")
 
 
 @pytest.mark.parametrize("said", ["no free way to it was found", "the motors hold no load there"])

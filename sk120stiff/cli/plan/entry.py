@@ -191,6 +191,9 @@ def command(
                 "Poses to which no free way was found, others taken instead where there are any: "
                 f"{made.left_out}."
             )
+        if count is not None and (fewer := count - len(made.poses)) > 0:
+            poses = "1 pose" if fewer == 1 else f"{fewer} poses"
+            said.append(f"{poses} fewer than was asked for: ways to others are not free either.")
     floor = made.cell.floor
     heights = lowest_points(start.robot, made.joints, at, made.cell)
     document |= {
