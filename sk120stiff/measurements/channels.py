@@ -63,6 +63,8 @@ class Channels:
             displacements.
         sigma: Standard uncertainty of each kind of channel as stated [m or rad].
         sigma_of_rows: (N, 3) standard uncertainty of each position or displacement [m], or None.
+        rays: (N, 3, 3) unit vectors, as rows, along which the numbers of a position are told, see
+            `rays.py`; None: along the axes.
     """
 
     position: Array | None = None
@@ -77,6 +79,7 @@ class Channels:
     turn: Array | None = None
     sigma: dict[str, float] = dataclasses.field(default_factory=dict)
     sigma_of_rows: Array | None = None
+    rays: Array | None = None
 
     def __post_init__(self) -> None:
         if all(getattr(self, kind) is None for kind in KINDS):
@@ -133,7 +136,7 @@ class Channels:
             name: None if getattr(self, name) is None else getattr(self, name)[index]
             for name in (
                 "position", "rotation", "distance", "anchor", "shift", "along", "inclination",
-                "level", "displacement", "turn", "sigma_of_rows",
+                "level", "displacement", "turn", "sigma_of_rows", "rays",
             )
         }  # fmt: skip
         return dataclasses.replace(self, **cut)
@@ -175,7 +178,7 @@ class Channels:
         """
         found: dict[Kind, tuple[Array, Array]] = {}
         if self.position is not None:
-            found["position"] = self.position - position, columns[:, :3]
+            found["position"] = self._on_rays(self.position - position, columns[:, :3])
         if self.rotation is not None:
             found["rotation"] = _turned(self.rotation, rotation, columns[:, 3:])
         if self.distance is not None and self.anchor is not None:
@@ -192,6 +195,13 @@ class Channels:
             np.concatenate([gap[known] for gap, _, known in held]),
             np.concatenate([slope[known] for _, slope, known in held]),
         )
+
+    def _on_rays(self, gap: Array, slope: Array) -> tuple[Array, Array]:
+        """Gaps of positions (N, 3) and their derivative (N, 3, P), along what they are told."""
+        if self.rays is None:
+            return gap, slope
+        along = np.einsum("nij,nj->ni", self.rays, gap)
+        return np.where(np.isnan(gap), np.nan, along), self.rays @ slope
 
     def _by_load(self, moved: Moved) -> dict[Kind, tuple[Array, Array]]:
         found: dict[Kind, tuple[Array, Array]] = {}

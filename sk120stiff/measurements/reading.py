@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,13 +21,14 @@ from sk120stiff.measurements.columns import Roles
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
+from sk120stiff.measurements.rays import along_rays
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
 from sk120stiff.measurements.subtraction import Displacements, displacements, undisplaced
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.measurements.zero import of_one_reading
 
 if TYPE_CHECKING:
-    from sk120stiff.measurements.settings import Settings, SettingsFile
+    from sk120stiff.measurements.settings import InstrumentEntry, Settings, SettingsFile
 
 
 _YAML = {".yaml", ".yml"}
@@ -128,13 +130,19 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         SAME_JOINT if roles.measured == columns.DISPLACEMENTS else SAME_POSE,
     )
     noise = NoiseStatement(_sigma(file), settings.noise.growth, _instrument(file))
-    if noise.instrument is not None and (absolute is not None or rows.sigma is not None):
+    own = rows.sigma is not None
+    if absolute is not None:
+        own = absolute.channels.sigma_of_rows is not None
+    if noise.instrument is not None and own:
         raise InputError(
-            "an instrument's uncertainty along its ray serves readings of displacements that state "
-            "none of their own",
+            "an instrument's uncertainty along its ray serves readings that state none of their "
+            "own",
             where=file.place("noise.instrument"),
             remedy="Write noise: {sigma: ..., unit: ...}, or keep the columns sx, sy, sz alone.",
         )
+    if absolute is not None and noise.instrument is not None:
+        channels = along_rays(absolute.channels, noise.instrument)
+        absolute = replace(absolute, channels=channels)
     point = np.zeros(3)
     if settings.point is not None:
         point = np.array(settings.point.in_metres(file.place("point.unit")))
@@ -261,7 +269,7 @@ def _instrument(file: SettingsFile) -> Instrument | None:
     told, unit = file.settings.noise.instrument, file.settings.noise.unit
     if told is None:
         return None
-    place = units.to_si(told.xyz, told.unit, "length", where=file.place("noise.instrument.unit"))
+    place = _place_of(file, told)
     along, across, along_per_m, across_per_m = units.to_si(
         (told.along, told.across, told.along_per_m, told.across_per_m),
         unit,
@@ -276,6 +284,26 @@ def _instrument(file: SettingsFile) -> Instrument | None:
         )
     x, y, z = (float(v) for v in place)
     return Instrument((x, y, z), along, across, along_per_m, across_per_m)
+
+
+def _place_of(file: SettingsFile, told: InstrumentEntry) -> Array:
+    """(3,) where the instrument stands [m]: in the base frame, or at the origin of its own axes."""
+    position = file.settings.position
+    if position is not None and position.frame == "unknown":
+        if told.xyz is not None:
+            raise InputError(
+                "these positions are in the instrument's own axes, at whose origin it stands",
+                where=file.place("noise.instrument.xyz"),
+                remedy="Leave xyz and its unit out.",
+            )
+        return np.zeros(3)
+    if told.xyz is None:
+        raise InputError(
+            "nothing says where the instrument stands",
+            where=file.place("noise.instrument"),
+            remedy="Write its place in the base frame: xyz: [3.4, -2.7, 0.9], unit: m.",
+        )
+    return units.to_si(told.xyz, told.unit, "length", where=file.place("noise.instrument.unit"))
 
 
 def _sigma(file: SettingsFile) -> float | None:

@@ -91,11 +91,12 @@ class PayloadEntry(Strict):
 class InstrumentEntry(Strict):
     """Where the instrument stands in the base frame, and its uncertainty along and across its ray.
 
-    Uncertainties are in `noise.unit`; those per metre of distance are added in squares.
+    Of positions in its own axes it stands at their origin. Uncertainties are in `noise.unit`; those
+    per metre of distance are added in squares.
     """
 
-    xyz: Vector
-    unit: str
+    xyz: Vector | None = None
+    unit: str | None = None
     along: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     across: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     along_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0

@@ -25,6 +25,7 @@ from sk120stiff.measurements.columns import (
     UNCERTAINTIES,
 )
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.noise_statement import Instrument
 from sk120stiff.robot.rotations import rotation_vector
 
 Written = Iterable[tuple[str, Iterable[str]]]
@@ -69,7 +70,7 @@ def _channels(read: Channels, length: str) -> Written:
         yield from _columns(POSITIONS, read.position, length, "length")
     if read.displacement is not None:
         yield from _columns(DISPLACEMENTS, read.displacement, length, "length")
-    if read.sigma_of_rows is not None:
+    if read.sigma_of_rows is not None and read.rays is None:
         yield from _columns(UNCERTAINTIES, read.sigma_of_rows, length, "length")
     if read.rotation is not None:
         known = np.array([np.isfinite(turn).all() for turn in read.rotation])
@@ -118,11 +119,21 @@ def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[
         since_zero = max(stated.get(kind, size) for kind in ("shift", "displacement"))
         if since_zero > size:  # two readings of the gauge
             settings["displacement"] = {"frame": m.displacement_frame, "zero": "separate"}
+    if m.noise.instrument is not None:
+        noise = _of_instrument(m.noise.instrument, said.frame == "unknown")
     if turn is not None:
         noise |= {"rotation": float(f"{1e6 * turn:.12g}"), "rotation_unit": "urad"}
     if "displacement" not in settings and m.displacement_frame != "base":
         settings["displacement"] = {"frame": m.displacement_frame}
     return settings | ({"noise": noise} if noise else {})
+
+
+def _of_instrument(instrument: Instrument, at_origin: bool) -> dict[str, Any]:
+    """The entry `noise` of what is sharper along its ray."""
+    sizes = ("along", "across", "along_per_m", "across_per_m")
+    told = {name: float(f"{1e6 * getattr(instrument, name):.12g}") for name in sizes}
+    place = {} if at_origin else {"xyz": list(map(float, instrument.place)), "unit": "m"}
+    return {"unit": "um", "instrument": {**place, **{k: v for k, v in told.items() if v}}}
 
 
 def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:

@@ -29,6 +29,7 @@ from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import ANGLES
 from sk120stiff.measurements.placing import Placing
 from sk120stiff.measurements.poses import labels_to_come
+from sk120stiff.measurements.rays import anywhere
 from sk120stiff.model import Model
 from sk120stiff.plan.discriminate import Rivalry, over_ranges, with_both
 from sk120stiff.plan.planned import LITTLE
@@ -239,7 +240,7 @@ def _unstated(readings: Measurements) -> Measurements:
     if said is None:
         return readings
     kept = {kind: size for kind, size in said.channels.sigma.items() if kind in ANGLES}
-    channels = replace(said.channels, sigma=kept, sigma_of_rows=None)
+    channels = replace(said.channels, sigma=kept, sigma_of_rows=None, rays=None)
     return replace(readings, absolute=replace(said, channels=channels))
 
 
@@ -272,6 +273,7 @@ def readings_like(
     said = rows.absolute
     if said is None:
         raise InputError("these readings are no positions")
+    said = replace(said, channels=anywhere(said.channels))
     if len(masses):
         said = replace(said, payload=np.tile(masses, rows.n_readings // len(masses)))
     if payload_point is not None:
@@ -330,7 +332,9 @@ def to_be_read(picked: Measurements, source: str) -> Measurements:
         ),
         absolute=replace(
             said,
-            channels=replace(said.channels.without(np.ones(count, bool)), sigma_of_rows=None),
+            channels=replace(
+                said.channels.without(np.ones(count, bool)), sigma_of_rows=None, rays=None
+            ),
             temperature=None,
         ),
         sigma=None, order=None, time=None, branch=None, repeat=None, use=np.ones(count, dtype=bool),

@@ -67,7 +67,7 @@ def simulated_channels(
         if said.channels.present:  # readings to be replaced, and no plan
             made[kind][~np.isfinite(getattr(said.channels, kind))] = np.nan
     stated: dict[str, float] = {kind: value for kind, value in sigma.items() if value > 0.0}
-    channels = replace(said.channels, **made, sigma=stated, sigma_of_rows=None)
+    channels = replace(said.channels, **made, sigma=stated, sigma_of_rows=None, rays=None)
     return replace(
         plan, absolute=replace(said, channels=channels), path=None, data_hash="", notes=notes
     )

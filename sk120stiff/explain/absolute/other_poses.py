@@ -14,6 +14,7 @@ from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.poses import labels_to_come
+from sk120stiff.measurements.rays import anywhere
 from sk120stiff.plan import Cell, Rig, cell_from_data, random_pool
 from sk120stiff.plan.discriminate import with_both
 from sk120stiff.plan.positions_pool import rivalry_of, to_be_read
@@ -60,6 +61,9 @@ def elsewhere(final: Calibration, options: Options) -> Measurements | None:
         return None
     a = pool.load_cases.a
     like = readings.select(np.random.default_rng(seed).integers(readings.n_readings, size=len(a)))
+    if like.absolute is not None:
+        channels = anywhere(like.absolute.channels)
+        like = replace(like, absolute=replace(like.absolute, channels=channels))
     return replace(
         like, joints=a, pose=tuple(f"pool_{k + 1}" for k in range(len(a))),
         zero_group=np.arange(len(a)), zero_joints=None,

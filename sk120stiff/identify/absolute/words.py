@@ -12,6 +12,7 @@ from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.gauge import Frozen
+from sk120stiff.identify.absolute.line_of_sight import by_line_of_sight
 from sk120stiff.identify.absolute.remainder import remainder_at_other_poses
 from sk120stiff.identify.absolute.repeated import pure_error
 from sk120stiff.identify.solve.polish import FAINTEST
@@ -130,6 +131,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     if found.placed is not None:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))
+    said += by_line_of_sight(found)
     said += _branches(readings)
     said += _hung(found, readings) + _payload(found, readings) + _by_weight(found, readings)
     said += _implausible(found)
