@@ -42,12 +42,12 @@ def by_line_of_sight(found: Calibration) -> list[str]:
         return []
     a, b = 1e6 * np.sqrt(along), 1e6 * np.sqrt(across)
     times, way, other = (a / b, "along", "across") if a > b else (b / a, "across", "along")
+    entry = f"{{unit: um, instrument: {{along: {_plain(a)}, across: {_plain(b)}}}}}"
     return [
-        f"The gap is {_plain(times)} times as large {way} the line of sight from the origin of these "
-        f"axes as {other} it ({max(a, b):.3g} against {min(a, b):.3g} µm rms). If an instrument "
-        "stands there that is so, as a camera is, write noise: {unit: um, instrument: "
-        f"{{along: {_plain(a)}, across: {_plain(b)}}}}} in the place of sigma: readings then count for "
-        "what they are worth."
+        f"The gap is {_plain(times)} times as large {way} the line of sight from the origin of "
+        f"these axes as {other} it ({max(a, b):.3g} against {min(a, b):.3g} µm rms). If an "
+        "instrument stands there that is so, as a camera is, write its uncertainties in the place "
+        f"of sigma, about noise: {entry}: readings then count for what they are worth."
     ]
 
 
