@@ -38,6 +38,10 @@ from sk120stiff.plan.rig import HANGING
 from sk120stiff.plan.surroundings import assumptions, cell_from_data
 from sk120stiff.robot import Robot
 
+NOTHING_BENDS = (
+    "neither weight nor payload puts a torque on it that shows; hang a heavier payload, or beside "
+    "its axis"
+)
 MARKERS = "The instrument's frame and the markers' places are fitted beside what is to be known."
 
 
@@ -65,7 +69,9 @@ class PlanOfPositions(Plan):
             why = untold.get(name)
             share = (std / span[name]) ** 2  # of what was plausible before: 1, nothing is told
             if why is None and not share < LITTLE:
-                std, why = np.inf, why_unseen(cases, parameter) or TOO_LITTLE
+                std, why = np.inf, TOO_LITTLE
+                if parameter.effect.joint_spring and why_unseen(cases, parameter):
+                    why = NOTHING_BENDS
             elif why is None:
                 std /= float(np.sqrt(1.0 - share))
             found.append(Expected(parameter, std, why))
@@ -84,7 +90,8 @@ class PlanOfPositions(Plan):
         total = design.known + design.gains[list(design.rows)].sum(axis=0)
         everywhere = self.candidates.information[0].sum(axis=0)
         share = np.trace(np.linalg.solve(total, everywhere)) / len(problem.rows)
-        return self.standard * float(np.sqrt(share))
+        few = len(problem.model.free) > len(design.rows) * len(problem.rows) / len(design.gains)
+        return np.nan if few else self.standard * float(np.sqrt(share))
 
 
 @on_one_thread
@@ -151,7 +158,7 @@ def plan_positions(
             raise InputError("these readings are no positions", where=str(known.path or "known"))
         used = known.with_joints(robot.actuated, robot.kinds).masked()
     like = readings_like(robot, used, payloads, payload_point, point)
-    within, a, remarks = _standing(robot, like, used, cell, places, candidates, seed)
+    within, a, remarks = _standing(robot, like, used, cell, places, count or 1, candidates, seed)
     pool = positions_pool(model, like, a, known=used, sigma=sigma)
     rivals = None if between is None else pool.rivalry(*between)
     wanted, untold = _wanted(pool, parameters) if rivals is None else ((), {})
@@ -167,7 +174,7 @@ def plan_positions(
         left = np.flatnonzero(~np.any(gone, axis=0)) if gone else np.arange(pool.pool.count)
         own = np.unique(group[left], return_inverse=True)[1].reshape(-1)
         size = min(poses, int(own.max()) + 1) if count is None else poses
-        refuse_count(own, size, loads)
+        _refuse_count(own, size, loads)
         rest = Pool(pool.pool.load_cases.rows(left))
         if rivals is not None and between is not None:
             chosen = _between(rivals.of_candidates(left), rest, own, (size, loads), between)
@@ -182,6 +189,13 @@ def plan_positions(
         taken = replace(taken, pose=labels_of(taken, used))
         return chosen, taken if places is None else places.named(taken)
 
+    numbers = size_of(pool, poses * loads)
+    few: tuple[str, ...] = ()
+    if numbers < len(pool.problem.model.free):
+        few = (
+            f"{numbers} numbers cannot tell {len(pool.problem.model.free)} values: what a fit of "
+            "these poses alone leaves open rests on what is plausible. Plan more poses.",
+        )
     named = places is not None or used is not None
     chosen, taken, way, left_out = drivable(
         choose, robot, within, drive=drive, named=named, seed=seed
@@ -189,11 +203,33 @@ def plan_positions(
     return PlanOfPositions.of(
         taken, model=pool.problem.model, chosen=chosen, standard=pool.standard, cell=within,
         known=known, seed=seed, way=way, left_out=left_out, candidates=pool,
-        remarks=(*pool.remarks, *remarks),
+        remarks=(*few, *pool.remarks, *remarks),
     )  # fmt: skip
 
 
 SOURCE = "poses and payloads chosen by 'sk120stiff plan'"
+
+
+def size_of(pool: PositionsPool, candidates: int) -> int:
+    """Numbers that are read at so many candidates."""
+    return candidates * len(pool.problem.rows) // pool.pool.count
+
+
+def _refuse_count(pose: Index, count: int, loads: int) -> None:
+    """Raise an `InputError` where there are not so many poses, or payloads at them."""
+    own = np.bincount(pose)
+    if loads > own.max():
+        raise InputError(
+            f"{loads} payloads at each pose, and {own.max()} "
+            f"{'is' if own.max() == 1 else 'are'} stated",
+            remedy="State as many masses to choose from (--payload '0,5,10 kg').",
+        )
+    if count > len(own):
+        raise InputError(
+            f"{count} poses of {len(own)} to choose from",
+            remedy="Ask for fewer, or draw more (--candidates).",
+        )
+    refuse_count(pose, count, loads)
 
 
 def _between(
@@ -242,13 +278,14 @@ def _standing(
     known: Measurements | None,
     cell: Cell | None,
     places: Places | None,
+    asked: int,
     count: int,
     seed: int,
 ) -> tuple[Cell, Array, tuple[str, ...]]:
     """The cell, poses (K, n) in it at which the motors hold every payload, and what is to be said.
 
     Raises:
-        Refusal: They hold it at none.
+        Refusal: They hold it at fewer than are `asked` for.
     """
     within = replace(cell or Cell(), rig=HANGING)
     said = like.absolute
@@ -262,9 +299,10 @@ def _standing(
     a = poses_in(robot, count, rng, within, at) if places is None else places.a
     heaviest = np.full(len(a), said.payload.max())
     held = poses_held(robot, within, a, heaviest, said.payload_point)
-    if not held.any():
+    if held.sum() < min(asked, len(a)):
         raise Refusal(
-            f"at no pose do the motors hold {heaviest[0]:g} kg beside the arm",
+            f"at {int(held.sum()) or 'no'} pose{'' if held.sum() < 2 else 's'} of {len(a)} do the "
+            f"motors hold {heaviest[0]:g} kg beside the arm",
             where=robot.name,
             remedy="Give a smaller payload, or correct the efforts of the URDF.",
         )

@@ -79,9 +79,23 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
 def test_payloads_stand_by_positions(run) -> None:
     wrong = run("plan", MODEL, "--count", "4", "--payload", "5 kg")
     assert wrong.code == 2 and "Add --positions" in wrong.stderr
-    for text in ("heavy", "-3 kg", "nan"):
+    for text in ("heavy", "-3 kg", "nan", "5", "5 kg or so", "nan kg"):
         none = run("plan", MODEL, "--positions", "--count", "4", f"--payload={text}")
         assert none.code == 2 and "is no mass" in none.stderr
+
+
+def test_a_plan_of_positions_says_why_it_cannot(run) -> None:
+    pulled = run("plan", MODEL, "--positions", "--count", "4", "--force", "100 N")
+    assert pulled.code == 2 and "--payload '0,5 kg'" in pulled.stderr
+    loads = run("plan", MODEL, "--positions", "--count", "4", "--loads", "3", "--payload", "9 kg")
+    assert loads.code == 2 and "3 payloads at each pose, and 1 is stated" in loads.stderr
+    many = run("plan", MODEL, "--positions", "--count", "90", *FEW)
+    assert many.code == 2 and "90 poses of 60 to choose from" in many.stderr
+    few = run(
+        "plan", MODEL, "--positions", "--count", "3", "--payload", "50 kg", *FEW[:2], "--json"
+    )
+    assert few.document["remarks"][0].startswith("9 numbers cannot tell")
+    assert "foretold_um" not in few.document
 
 
 def test_between_two_effects(run) -> None:

@@ -37,12 +37,20 @@ class Hung(TypedDict, total=False):
     payload_point: Array
 
 
-def hung_on(masses: Sequence[str] | None, point: str | None, absolute: bool) -> Hung:
+def hung_on(
+    masses: Sequence[str] | None, point: str | None, force: str | None, absolute: bool
+) -> Hung:
     """--payload and --payload-point.
 
     Raises:
-        InputError: They are no masses, or positions are not what is planned.
+        InputError: They are no masses, positions are not what is planned, or a force is (--force).
     """
+    if absolute and force is not None:
+        raise InputError(
+            "nothing pulls the tool where positions are read",
+            where="--force",
+            remedy="State what hangs on it: --payload '0,5 kg'.",
+        )
     if not absolute and (masses or point is not None):
         raise InputError(
             "a payload stands by positions",
@@ -62,16 +70,16 @@ def hung_on(masses: Sequence[str] | None, point: str | None, absolute: bool) -> 
 
 def _kilograms(text: str) -> list[float]:
     """Masses of one --payload: '5 kg', or several with commas between them."""
+    numbers, unit, behind = text.rpartition("kg")
     found = []
-    for word in text.split(","):
-        number = word.strip().removesuffix("kg").strip()
+    for word in (numbers if unit and not behind.strip() else "").split(","):
         try:
-            mass = float(number)
+            mass = float(word.strip().removesuffix("kg"))
         except ValueError:
             mass = np.nan
         if not 0.0 <= mass < np.inf:
             raise InputError(
-                f"{word.strip()!r} is no mass",
+                f"{text.strip()!r} is no mass",
                 where="--payload",
                 remedy="Write it in kg, like '5 kg'; several as '0,5,10 kg'.",
             )

@@ -40,7 +40,7 @@ def command(
     between: str | None = None,
     wanted: Annotated[list[str] | None, typer.Option("--for")] = None,
     data: Path | None = None,
-    force: str = "400 N",
+    force: str | None = None,
     noise: str | None = None,
     point: str | None = None,
     positions: Annotated[bool, typer.Option("--positions")] = False,
@@ -85,7 +85,7 @@ def command(
         wanted (PARAM): Make this well known: a parameter, or an effect with all it has. [default:
             all free ones]
         data (CSV): Readings there are already; points and noise are theirs.
-        force (FORCE): Size of the loads, less where the motors cannot hold it.
+        force (FORCE): Size of the loads, less where the motors cannot hold it. [default: 400 N]
         noise (LENGTH): Standard uncertainty of one reading. [default: the data's, else 10 um]
         point (XYZ): Measured and loaded point in the tool frame, e.g. '0,50,120 mm'. [default: the
             data's, else the tool frame's origin]
@@ -133,7 +133,7 @@ def command(
     language = None if program is None else language_by_joints(program)
     known, start = _opened(robot, model, data)
     absolute = positions or (known is not None and known.absolute is not None)
-    hung = hung_on(payload, payload_point, absolute)
+    hung = hung_on(payload, payload_point, force, absolute)
     at = points_of(known, point)[0]
     within = _stated(opened_cell(start.robot, cell, data, model or _file(robot)), lowest, box)
     given = None
@@ -147,7 +147,7 @@ def command(
         larger, found = named_parameters(larger, text)
         names += found
     with progress_bar("plan"):
-        pull = parse_size(force, "force", where="--force", like="400 N")
+        pull = parse_size(force or "400 N", "force", where="--force", like="400 N")
         kind = (
             partial(plan_positions, **hung)
             if absolute
