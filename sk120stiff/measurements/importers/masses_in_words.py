@@ -1,0 +1,143 @@
+"""Which mass hung on the tool, as names of files and comments above a table say it.
+
+A number counts with its unit alone: the 10 of a UR10 and the 210 of a KR210 are no masses.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.masses import LOAD_WORDS, MASSES
+
+_NUMBER = r"\d+(?:[.,]\d+|p\d+)?"  # 2.5, 2,5 and 2p5
+_UNIT = r"(?P<unit>[kK][gG]|g|lbs?)(?![^\W_])"  # G is no gram
+_TOKEN = re.compile(rf"(?<![\d.,])(?P<number>{_NUMBER})[ _-]?{_UNIT}")
+_FORCE = re.compile(r"(?<![\d.,])\d+(?:[.,]\d+)?[ _-]?(?:N|kN|daN)(?![^\W_])")
+_WORDS = "|".join(sorted(LOAD_WORDS, key=len, reverse=True))
+_LOAD = frozenset(word for word in LOAD_WORDS if " " not in word) | {"m", "w", "with", "mit"}
+# Before two numbers the first of which counts something: pose_2_5kg is pose 2, with 5 kg.
+_COUNTED = re.compile(
+    "poses?|points?|pt|p|pos(?:ition)?|runs?|rep(?:eat)?|trial|test|file|set|no|nr|stellung|"
+    "messung|punkt|wdh|day|config(?:uration)?|meas(?:urement)?|series|station|step"
+)
+# A capacity, and masses that hang not on the tool or do so in every row.
+_NOT_HUNG = re.compile(
+    r"max|rated|rating|nominal|capacit|capable|permiss|allow|limit|nenn|zul(?:ä|ae)ss|traglast|"
+    r"up to|bis zu|cell|sensor|robot|arm mass|link|smr|reflector|density|dichte",
+    re.IGNORECASE,
+)
+_STATED = re.compile(
+    rf"(?<![^\W_])(?:{_WORDS})(?![^\W_])[^\d,;|]{{0,30}}(?:{_NUMBER})\s*{_UNIT}"
+    rf"|(?<![^\W_])m\s*[=:]\s*(?:{_NUMBER})\s*{_UNIT.replace('<unit>', '<mass>')}"
+    rf"|(?<![\d.,])(?:{_NUMBER})\s*{_UNIT.replace('<unit>', '<before>')}\s+(?:{_WORDS})(?![^\W_])",
+    re.IGNORECASE,
+)
+_WITHOUT = re.compile(
+    r"(?<![^\W\d_])(?:(?:un|no|without|zero|ohne|sans|senza|sin)[ _-]?"
+    r"(?:load(?:ed)?|payload|last|belast(?:et|ung)|charge|carico|carga)|unbelastet|lastfrei|leer|"
+    r"empty|free)(?![^\W\d_])",
+    re.IGNORECASE,
+)
+
+
+class Words(NamedTuple):
+    """Masses that words hold [kg], as they stand there; several readings of one are several."""
+
+    masses: tuple[float, ...] = ()
+    texts: tuple[str, ...] = ()
+
+
+def masses_of_name(stem: str, robot: str = "") -> Words:
+    """The masses in the name of a file without its ending, of which one alone counts.
+
+    Args:
+        stem: As ``UR10_payload_5kg``.
+        robot: The robot's own name: what stands there is the robot's (``iiwa_14kg``).
+
+    A mass behind a word such as *payload* goes before one that stands there alone. Of ``2_5kg``
+    both 5 kg and 2.5 kg are given, unless the word before tells.
+    """
+    called: list[tuple[float, str]] = []
+    alone: list[tuple[float, str]] = []
+    own = _plain(robot)
+    for match in _TOKEN.finditer(stem):
+        before = stem[: match.start()]
+        glued = re.search(r"[^\W\d_]+$", before)
+        word = re.search(r"([^\W\d_]+)[\W_]*$", before)
+        called_so = bool(word) and word is not None and word[1].lower() in _LOAD
+        if (glued and not called_so) or (word and _NOT_HUNG.fullmatch(word[1])):
+            continue  # the robot's own: KR16kg, max10kg
+        if len(own) > 0 and _plain(match.group()) in own:
+            continue
+        values, text, split = _with_a_part_before(before, match)
+        taken = called if called_so or split else alone
+        taken += [(value, text) for value in values]
+    found = called or alone
+    return Words(
+        tuple(dict.fromkeys(value for value, _ in found)),
+        tuple(dict.fromkeys(text for _, text in found)),
+    )
+
+
+def masses_of_comment(text: str) -> Words:
+    """The masses of a line that says what hung on the tool; none where it says anything else."""
+    if not _STATED.search(text) or _NOT_HUNG.search(text):
+        return Words()
+    found = {_kilograms(m["number"], m["unit"]): m.group() for m in _TOKEN.finditer(text)}
+    return Words(tuple(found), tuple(found.values()))
+
+
+def forces_of_name(stem: str) -> tuple[str, ...]:
+    """Forces in the name of a file, which say no direction."""
+    return tuple(match.group() for match in _FORCE.finditer(stem))
+
+
+def says_without(stem: str) -> bool:
+    """Does the name of a file say that nothing hung there?"""
+    return _WITHOUT.search(stem) is not None
+
+
+def mass_told(text: str, where: str) -> float:
+    """Kilograms of ``5 kg``, ``500 g`` or ``10 lb``.
+
+    Raises:
+        InputError: No mass with its unit.
+    """
+    match = _TOKEN.fullmatch(text.strip())
+    if match is None:
+        raise InputError(
+            f"{text.strip()!r} is no mass",
+            where=where,
+            remedy="Write it with its unit, like '5 kg'; of one file of several 'a.csv=5 kg'.",
+        )
+    return _kilograms(match["number"], match["unit"])
+
+
+def _with_a_part_before(before: str, match: re.Match[str]) -> tuple[list[float], str, bool]:
+    """The mass, its text, and whether a word of loads stands before a number in two parts.
+
+    A digit and a line before the number may be its whole part, as file names bear no point.
+    """
+    plain = [_kilograms(match["number"], match["unit"])]
+    parts = re.search(r"(?:([^\W\d_]+)[ _=-]?)?(?<!\d)(0|[1-9]\d?)([_-])$", before)
+    if parts is None or not match["number"].isdigit():
+        return plain, match.group(), False
+    whole = [_kilograms(f"{parts[2]}.{match['number']}", match["unit"])]
+    text = f"{parts[2]}{parts[3]}{match.group()}"
+    word = (parts[1] or "").lower()
+    if _COUNTED.fullmatch(word):
+        return plain, match.group(), False
+    if word in _LOAD and parts[3] == "_":
+        return whole, text, True
+    return [*plain, *whole], text, word in _LOAD
+
+
+def _kilograms(number: str, unit: str) -> float:
+    value = float(number.replace(",", ".").replace("p", "."))
+    return value * MASSES[unit.lower()]
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[\W_]+", "", text).lower()
