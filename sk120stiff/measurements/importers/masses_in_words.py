@@ -56,7 +56,7 @@ def masses_of_name(stem: str, robot: str = "") -> Words:
         stem: As ``UR10_payload_5kg``.
         robot: The robot's own name: what stands there is the robot's (``iiwa_14kg``).
 
-    A mass behind a word such as *payload* goes before one that stands there alone. Of ``2_5kg``
+    A mass behind a word such as *payload* goes before one that stood there alone. Of ``2_5kg``
     both 5 kg and 2.5 kg are given, unless the word before tells.
     """
     called: list[tuple[float, str]] = []
@@ -66,13 +66,13 @@ def masses_of_name(stem: str, robot: str = "") -> Words:
         before = stem[: match.start()]
         glued = re.search(r"[^\W\d_]+$", before)
         word = re.search(r"([^\W\d_]+)[\W_]*$", before)
-        called_so = bool(word) and word is not None and word[1].lower() in _LOAD
+        called_so = word is not None and word[1].lower() in _LOAD
         if (glued and not called_so) or (word and _NOT_HUNG.fullmatch(word[1])):
             continue  # the robot's own: KR16kg, max10kg
         if len(own) > 0 and _plain(match.group()) in own:
             continue
         values, text, split = _with_a_part_before(before, match)
-        taken = called if called_so or split else alone
+        taken = called if called_so or split or called else alone
         taken += [(value, text) for value in values]
     found = called or alone
     return Words(

@@ -11,12 +11,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from sk120stiff.arrays import Index
 from sk120stiff.errors import InputError, Refusal, listed
 from sk120stiff.measurements.cloud import FEWEST
 from sk120stiff.measurements.importers.contract import FILE
 from sk120stiff.measurements.importers.drafting import Draft, near_poses
 from sk120stiff.measurements.importers.frames import counted_poses, laid_over, placed
+from sk120stiff.measurements.importers.hung_masses import OPTION
+from sk120stiff.measurements.importers.moved_or_bent import moved
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length
@@ -61,14 +65,21 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
     best = min(left.values())
     if few and not np.isfinite(best):
         raise _in_no_frame(_with(draft, (), labels), few, mode, robot, told)
-    well = min(counts.values()) >= WELL and (not files or _loads_alike(draft, labels))
+    well = min(counts.values()) >= WELL and not (files and _may_sag_apart(draft, labels, poses))
     sag = 0.0 if well else SAGS * arm_length(robot)
-    way = next((w for w in ways if left[w] <= np.hypot(AS_WELL * best, sag)), ("station",))
+    as_well = [w for w in ways if left[w] <= AS_WELL * best] or [("station",)]
+    way = next((w for w in ways if left[w] <= np.hypot(AS_WELL * best, sag)), as_well[0])
     if "station" not in way and well:
         way = ("station", *way)
     names = {name: name for name in counts}
     if files and "station" in way and sag:
         names = _merged(draft, way, labels, mode, robot, told, sag)
+    elif files and sag and not few:
+        own = _pushed(_with(draft, way, labels), labels, read, poses, mode, robot, told)
+        if len(set(own.values())) > 1 and np.isfinite(left["station", *way]):
+            way, names = ("station", *way), own
+        elif way not in as_well and _looks_moved(_with(draft, way, labels), mode, robot, told):
+            way = as_well[0]
     return _told(_with(draft, way, labels, names), way, names, left, few, sag)
 
 
@@ -98,13 +109,54 @@ def _with(
     return replace(draft, other=(*kept, *((header, of[header]) for header in way)))
 
 
-def _loads_alike(draft: Draft, labels: Columns) -> bool:
-    """Is the load stated, and were the same loads read in every file? No sag then differs."""
+def _may_sag_apart(draft: Draft, labels: Columns, poses: NDArray[np.str_]) -> bool:
+    """May what differs from file to file be the sag of other loads? Loads that are stated tell it;
+    where none is, other loads are what the same poses are read again for.
+    """
     loads: dict[str, set[tuple[float, ...]]] = {}
-    for label, wrench in zip(labels, draft.loads.wrench.tolist(), strict=True):
+    at: dict[str, set[str]] = {}
+    for label, wrench, pose in zip(labels, draft.loads.wrench.tolist(), poses, strict=True):
         loads.setdefault(label, set()).add(tuple(wrench))
-    first, *others = loads.values()
-    return bool(draft.loads.taken) and all(own == first for own in others)
+        at.setdefault(label, set()).add(str(pose))
+    if draft.loads.taken:
+        first, *others = loads.values()
+        return any(own != first for own in others)
+    return len(set().union(*at.values())) < sum(map(len, at.values()))
+
+
+def _pushed(
+    draft: Draft,
+    labels: Columns,
+    read: Index,
+    poses: NDArray[np.str_],
+    mode: Mode,
+    robot: Robot,
+    told: Told,
+) -> dict[str, str]:
+    """File → the first one from the same place of the tracker, where poses of both tell it."""
+    names = list(dict.fromkeys(labels))
+    laid = laid_over(draft, mode, robot, told)
+    if laid is None:
+        return dict.fromkeys(names, names[0])
+    number = np.unique(poses, return_inverse=True)[1].astype(float)
+    rows = {name: read[np.array(labels)[read] == name] for name in names}
+    out: dict[str, str] = {}
+    for name in names:
+        heads = list(dict.fromkeys(out.values()))
+        off = {h: moved(draft, rows[h], rows[name], number, robot, laid[1]) for h in heads}
+        same = [head for head, by in off.items() if by == 0.0 or by is None]
+        # A file that shares no poses with any other stays where nothing says it was moved.
+        out[name] = same[0] if same else name
+    return out
+
+
+def _looks_moved(draft: Draft, mode: Mode, robot: Robot, told: Told) -> bool:
+    """Are these positions in no one frame by far more than springs could explain?"""
+    try:
+        placed(draft, mode, robot, told)
+    except Refusal:
+        return True
+    return False
 
 
 def _merged(
@@ -184,7 +236,7 @@ def _told(
         if np.isfinite(own := left.get(("station", *way), np.inf)):
             fits += f", {1e3 * own:.3g} mm with one of each"
         unused.append(f"column station: one frame of the tracker fits all {len(names)} ({fits})")
-        said += _why_one(names, few, sag)
+        said += _why_one(draft, names, few, sag)
     if "series" in way:
         before = left[tuple(h for h in way if h != "series")]
         was = f"{1e3 * before:.3g} mm" if np.isfinite(before) else "more than any arm is off"
@@ -196,16 +248,23 @@ def _told(
     return replace(draft, said=(*draft.said, *said), unused=(*draft.unused, *unused))
 
 
-def _why_one(names: dict[str, str], few: list[str], sag: float) -> list[str]:
+def _why_one(draft: Draft, names: dict[str, str], few: list[str], sag: float) -> list[str]:
     """Why one frame of the tracker is taken for all files or stations, in a sentence."""
+    one = f"The tracker is taken to have stood in one place for all {len(names)}: "
     if few:
         shown = [*few[:SHOWN], *([f"{len(few) - SHOWN} more"] if len(few) > SHOWN else [])]
         return [
-            f"The tracker is taken to have stood in one place for all {len(names)}: fewer than "
-            f"{FEWEST} poses, as of {listed(shown)}, tell no frame of their own."
+            f"{one}fewer than {FEWEST} poses, as of {listed(shown)}, tell no frame of their own."
         ]
+    if not sag:
+        return []
+    loads = (
+        ""
+        if draft.loads.taken
+        else f" If they were read under other masses, say so: {OPTION} 'FILE=5 kg'."
+    )
     return [
-        f"The tracker is taken to have stood in one place for all {len(names)}: what they differ "
-        f"by is no more than an arm may sag ({1e3 * sag:.2g} mm, {SAGS:.1%} of its length). If it "
-        "was moved, add a column station with a label for each place."
+        f"{one}what they differ by is no more than an arm may sag ({1e3 * sag:.2g} mm, "
+        f"{SAGS:.1%} of its length).{loads} If it was moved, add a column station with a label "
+        "for each place."
     ]
