@@ -35,6 +35,7 @@ from sk120stiff.measurements.importers.hung_masses import (
 from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
+from sk120stiff.measurements.importers.lost_readings import without_lost
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.orientation import (
@@ -262,12 +263,12 @@ def _sheet(
 ) -> Sheet:
     whole = opened(source)
     importer, why = formats.chosen(whole, name)
-    sheet = importer.read(whole)
+    sheet = without_lost(importer.read(whole))
     if why == "as told":
         sheet = dataclasses.replace(sheet, title=importer.title, why=why)
     if before is not None:
         free = opened(dataclasses.replace(source, path=before, sheet=None))
-        sheet = with_before(sheet, formats.chosen(free, name)[0].read(free), told)
+        sheet = with_before(sheet, without_lost(formats.chosen(free, name)[0].read(free)), told)
     if loads_file is None or told.payloads:
         sheet = with_mass(sheet, told, robot)
     others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
