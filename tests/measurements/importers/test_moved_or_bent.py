@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from sk120stiff import load_robot
+from sk120stiff.measurements.importers import moved_or_bent
 from tests.measurements.importers.test_several_files import (
     WHOLE,
     brought,
@@ -97,3 +100,37 @@ def test_few_poses_from_a_place_that_is_far_off_have_its_frame(tmp_path: Path) -
     parts[3] = ("f3", pushed(parts[3][1], 40.0))
     found = brought(files(tmp_path, *parts))
     assert labels(found, "station") == ("f0",) * 24 + ("f3",) * 8
+
+
+def told(rng: np.random.Generator, push: float) -> float | None:
+    """What is found of poses close together, read with a mass that hangs aside of the marker."""
+    robot, marker = load_robot(ur5(), tool="tool0"), np.array([0.03, 0.01, 0.09])
+    q = rng.uniform(-0.35, 0.35, (40, 6)) + 0.8 * np.array([0, -1, 1, 0, 1, 0])
+    J, hung = robot.jacobian(q, point=marker)[:, :3], marker + rng.normal(0.0, 0.05, 3)
+    turn = robot.jacobian(q, point=hung)[:, 2] * -50.0 / (SPRINGS * rng.uniform(0.5, 2.0, 6))
+    apart = np.einsum("pik,pk->pi", J, turn) + rng.normal(0.0, 1e-5, (40, 3)) + [push, 0.0, push]
+    draft: Any = SimpleNamespace(
+        measured=np.concatenate([np.zeros((40, 3)), apart]),
+        joints=SimpleNamespace(values=np.concatenate([q, q])),
+    )
+    rows, laid = np.arange(40), SimpleNamespace(turns=np.eye(3)[None], marker=marker)
+    poses = np.concatenate([rows, rows])
+    return moved_or_bent.moved(draft, rows, rows + 40, poses, robot, laid)  # type: ignore[arg-type]
+
+
+def test_at_poses_close_together_sag_is_told_from_a_push_by_the_springs() -> None:
+    rng = np.random.default_rng(0)
+    assert [told(rng, 0.0) for _ in range(30)] == [0.0] * 30
+    assert all(told(rng, 1e-3) for _ in range(10))
+
+
+def test_few_common_poses_tell_nothing() -> None:
+    robot = load_robot(ur5(), tool="tool0")
+    draft: Any = SimpleNamespace(
+        measured=np.zeros((4, 3)), joints=SimpleNamespace(values=np.zeros((4, 6)))
+    )
+    laid: Any = SimpleNamespace(turns=np.eye(3)[None], marker=np.zeros(3))
+    first, second = np.array([0, 1]), np.array([2, 3])
+    for poses in ([0, 1, 0, 1], [0, 1, 2, 3]):
+        found = moved_or_bent.moved(draft, first, second, np.array(poses), robot, laid)
+        assert found is None
