@@ -25,7 +25,7 @@ SHOWN = 4  # masses or files that are told one by one
 Place = tuple[str, str]  # where a mass stands, and the words there
 
 
-def with_mass(sheet: Sheet, told: Told, robot: str = "") -> Sheet:
+def with_mass(sheet: Sheet, told: Told, robot: str = "", beside: Sequence[str] = ()) -> Sheet:
     """The sheet with a column ``payload`` in kg, where no column holds a load and one mass is told,
     or said by the name of the file or by a line above the table.
 
@@ -33,6 +33,7 @@ def with_mass(sheet: Sheet, told: Told, robot: str = "") -> Sheet:
         sheet: The readings of one file.
         told: With `Told.payloads`, which goes before what the file says.
         robot: The robot's name; a mass that stands there is the robot's own.
+        beside: Names of the files of the campaign, without endings.
 
     Raises:
         InputError: More than one mass could be meant, or the load is given twice.
@@ -49,7 +50,7 @@ def with_mass(sheet: Sheet, told: Told, robot: str = "") -> Sheet:
         return _with_column(sheet, given, OPTION)
     if columns or told.wrench is not None:
         return sheet
-    by_name = masses_of_name(sheet.path.stem, robot)
+    by_name = masses_of_name(sheet.path.stem, robot, beside)
     lines = [(n, text, masses_of_comment(text)) for n, text in sheet.remarks]
     lines = [line for line in lines if line[2].masses]
     said: dict[float, list[Place]] = {}

@@ -6,6 +6,7 @@ A number counts with its unit alone: the 10 of a UR10 and the 210 of a KR210 are
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from sk120stiff.errors import InputError
@@ -22,6 +23,11 @@ _COUNTED = re.compile(
     "poses?|points?|pt|p|pos(?:ition)?|runs?|rep(?:eat)?|trial|test|file|set|no|nr|stellung|"
     "messung|punkt|wdh|day|config(?:uration)?|meas(?:urement)?|series|station|step"
 )
+_PARTS = re.compile(
+    r"(?:(?P<word>[^\W\d_]+)(?P<gap>[ _=-]?)|(?P<date>\d[ _.-]))?(?<!\d)(?P<whole>0|[1-9]\d?)"
+    r"(?P<line>[_-])$"
+)
+MANY = 10  # files with other numbers before the mass: no series of masses has so many
 # A capacity, and masses that hang not on the tool or do so in every row.
 _NOT_HUNG = re.compile(
     r"max|rated|rating|nominal|capacit|capable|permiss|allow|limit|nenn|zul(?:ä|ae)ss|traglast|"
@@ -49,12 +55,13 @@ class Words(NamedTuple):
     texts: tuple[str, ...] = ()
 
 
-def masses_of_name(stem: str, robot: str = "") -> Words:
+def masses_of_name(stem: str, robot: str = "", beside: Sequence[str] = ()) -> Words:
     """The masses in the name of a file without its ending, of which one alone counts.
 
     Args:
         stem: As ``UR10_payload_5kg``.
         robot: The robot's own name: what stands there is the robot's (``iiwa_14kg``).
+        beside: Names of the other files, which tell whether a number before counts the files.
 
     A mass behind a word such as *payload* goes before one that stood there alone. Of ``2_5kg``
     both 5 kg and 2.5 kg are given, unless the word before tells.
@@ -71,7 +78,7 @@ def masses_of_name(stem: str, robot: str = "") -> Words:
             continue  # the robot's own: KR16kg, max10kg
         if len(own) > 0 and _plain(match.group()) in own:
             continue
-        values, text, split = _with_a_part_before(before, match)
+        values, text, split = _with_a_part_before(before, match, beside)
         taken = called if called_so or split or called else alone
         taken += [(value, text) for value in values]
     found = called or alone
@@ -115,23 +122,34 @@ def mass_told(text: str, where: str) -> float:
     return _kilograms(match["number"], match["unit"])
 
 
-def _with_a_part_before(before: str, match: re.Match[str]) -> tuple[list[float], str, bool]:
+def _with_a_part_before(
+    before: str, match: re.Match[str], beside: Sequence[str]
+) -> tuple[list[float], str, bool]:
     """The mass, its text, and whether a word of loads stands before a number in two parts.
 
-    A digit and a line before the number may be its whole part, as file names bear no point.
+    A number and a line before the mass may be its whole part, as file names bear no point. It is
+    none behind a word that counts, in a type (UR10), in a date, or where it counts the files.
     """
     plain = [_kilograms(match["number"], match["unit"])]
-    parts = re.search(r"(?:([^\W\d_]+)[ _=-]?)?(?<!\d)(0|[1-9]\d?)([_-])$", before)
+    parts = _PARTS.search(before)
     if parts is None or not match["number"].isdigit():
         return plain, match.group(), False
-    whole = [_kilograms(f"{parts[2]}.{match['number']}", match["unit"])]
-    text = f"{parts[2]}{parts[3]}{match.group()}"
-    word = (parts[1] or "").lower()
-    if _COUNTED.fullmatch(word):
+    word, called = (parts["word"] or "").lower(), (parts["word"] or "").lower() in _LOAD
+    named = bool(word) and not called and not parts["gap"]
+    if named or _COUNTED.fullmatch(word) or parts["date"] or _counts(before, parts, beside):
         return plain, match.group(), False
-    if word in _LOAD and parts[3] == "_":
+    whole = [_kilograms(f"{parts['whole']}.{match['number']}", match["unit"])]
+    text = f"{parts['whole']}{parts['line']}{match.group()}"
+    if called and parts["line"] == "_":
         return whole, text, True
-    return [*plain, *whole], text, word in _LOAD
+    return [*plain, *whole], text, called
+
+
+def _counts(before: str, parts: re.Match[str], beside: Sequence[str]) -> bool:
+    """Does this number count the files? Some have a zero before it, or there are many of them."""
+    shape = re.compile(rf"{re.escape(before[: parts.start('whole')])}(\d+){parts['line']}\d")
+    numbers = {found[1] for name in beside if (found := shape.match(name))}
+    return len(numbers) >= MANY or any(n[0] == "0" and len(n) > 1 for n in numbers)
 
 
 def _kilograms(number: str, unit: str) -> float:

@@ -162,6 +162,7 @@ def import_readings(
                 sheet, topic, marker,
             ),
             formats, format_name, joints_file, loads_file, before, told, robot.name,
+            [Path(each).stem for each in paths],
         )
         for one in paths
     ]  # fmt: skip
@@ -260,6 +261,7 @@ def _sheet(
     before: Path | None,
     told: Told,
     robot: str,
+    beside: Sequence[str],
 ) -> Sheet:
     whole = opened(source)
     importer, why = formats.chosen(whole, name)
@@ -270,7 +272,7 @@ def _sheet(
         free = opened(dataclasses.replace(source, path=before, sheet=None))
         sheet = with_before(sheet, without_lost(formats.chosen(free, name)[0].read(free)), told)
     if loads_file is None or told.payloads:
-        sheet = with_mass(sheet, told, robot)
+        sheet = with_mass(sheet, told, robot, beside)
     others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
     own = any(c.meaning.startswith("joint ") for c in sheet.columns)
     if joints_file is None and not own and not source.path.is_dir() and is_workbook(source.data):

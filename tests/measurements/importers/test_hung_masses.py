@@ -48,12 +48,20 @@ def hung(found: Imported) -> list[float] | None:
         ("pose_2_5kg", (5.0,)), ("2_5kg", (5.0, 2.5)), ("x_500g", (0.5,)), ("m=3kg", (3.0,)),
         ("a-5Kg-b", (5.0,)), ("10lb", (4.5359237,)), ("mit_5kg_KR16", (5.0,)),
         ("robot_14kg_load_5kg", (5.0,)), ("load_0kg_5kg", (5.0, 0.0)), ("0kg", (0.0,)),
+        ("UR10_5kg", (5.0,)), ("2026-11-22_5kg", (5.0,)), ("m2_5kg", (2.5,)),
+        ("a_2_5kg", (5.0, 2.5)),
         ("KR210", ()), ("UR5", ()), ("KR16kg", ()), ("max_10kg_a", ()), ("200N", ()),
         ("5G", ()), ("10kgf", ()), ("12gauge", ()),
     ],
 )  # fmt: skip
 def test_masses_of_names(name: str, masses: tuple[float, ...]) -> None:
     assert sorted(masses_of_name(name).masses) == pytest.approx(sorted(masses))
+
+
+def test_a_number_that_counts_the_files_is_no_part_of_the_mass() -> None:
+    assert masses_of_name("17_3kg", beside=("01_0kg", "01_3kg", "17_3kg")).masses == (3.0,)
+    assert masses_of_name("7_3kg", beside=[f"{k}_3kg" for k in range(12)]).masses == (3.0,)
+    assert len(masses_of_name("1_5kg", beside=("0_5kg", "1_5kg", "2_5kg")).masses) == 2
 
 
 def test_what_stands_in_the_robots_name_is_its_own() -> None:
