@@ -14,7 +14,7 @@ from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.cloud import FEWEST, Cloud
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.importers.drafting import Draft, near_poses
+from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.measurements.placing import FITS, place
@@ -119,15 +119,21 @@ def _unloaded(draft: Draft, mode: Mode) -> Index:
 
 
 def laid_over(
-    draft: Draft, mode: Mode, robot: Robot, told: Told
+    draft: Draft, mode: Mode, robot: Robot, told: Told, poses: NDArray[np.str_]
 ) -> tuple[Cloud, Registration] | None:
     """Positions with the robot laid onto them; None where no arm leaves as much, or a station or
     a series has fewer poses than tell it.
+
+    Args:
+        draft, mode, robot, told: As `placed` has them.
+        poses: (N,) label of the pose of every row: what was read twice at one tells no more.
     """
     rows, (point, known) = _unloaded(draft, mode), points_of(draft, told)
     rows = rows[np.isfinite(draft.measured[rows]).all(axis=1)]
     stood = stood_of(draft)
-    if len(rows) < FEWEST or _fewest_poses(draft, rows) < FEWEST:
+    of = [np.array(own) for own in (draft.stations, draft.series) if own is not None]
+    counts = [count for own in of for count in counted_poses(poses, own, rows).values()]
+    if min([len(rows), *counts]) < FEWEST:
         return None
     x, names = draft.measured[rows], np.array(draft.mounts)[rows]
     group = np.unique(names, return_inverse=True)[1] * (not known)
@@ -135,15 +141,6 @@ def laid_over(
     found = cloud.placed(fit_marker=not known)[0]
     spread = float(np.sqrt(((x - x.mean(axis=0)) ** 2).sum(axis=1).mean()))
     return (cloud, found) if found.rms < FITS * spread else None
-
-
-def _fewest_poses(draft: Draft, rows: Index) -> int:
-    """Poses of the station or series that has fewest: what was read twice at one tells no more."""
-    kinds = [np.array(own) for own in (draft.stations, draft.series) if own is not None]
-    if not kinds:
-        return len(rows)
-    poses = np.array(near_poses(draft.joints.values))
-    return min(min(counted_poses(poses, labels, rows).values()) for labels in kinds)
 
 
 def counted_poses(poses: NDArray[np.str_], labels: NDArray[np.str_], rows: Index) -> dict[str, int]:

@@ -61,7 +61,7 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
     if len(counts) == 1:
         return _with(draft, (), labels)
     few = [name for name, count in counts.items() if count < FEWEST]
-    left = {way: _left_over(_with(draft, way, labels), mode, robot, told) for way in ways}
+    left = {way: _left_over(_with(draft, way, labels), mode, robot, told, poses) for way in ways}
     best = min(left.values())
     if few and not np.isfinite(best):
         raise _in_no_frame(_with(draft, (), labels), few, mode, robot, told)
@@ -73,7 +73,7 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
         way = ("station", *way)
     names = {name: name for name in counts}
     if files and "station" in way and sag:
-        names = _merged(draft, way, labels, mode, robot, told, sag)
+        names = _merged(draft, way, labels, mode, robot, told, sag, poses)
     elif files and sag and not few:
         own = _pushed(_with(draft, way, labels), labels, read, poses, mode, robot, told)
         if len(set(own.values())) > 1 and np.isfinite(left["station", *way]):
@@ -92,9 +92,11 @@ def loads_apart(draft: Draft) -> bool:
     return len({pose for pose, _ in pairs_used}) < len(pairs_used)
 
 
-def _left_over(draft: Draft, mode: Mode, robot: Robot, told: Told) -> float:
+def _left_over(
+    draft: Draft, mode: Mode, robot: Robot, told: Told, poses: NDArray[np.str_]
+) -> float:
     """What is left of the positions [m]; infinite where no arm leaves as much, or few tell it."""
-    laid = laid_over(draft, mode, robot, told)
+    laid = laid_over(draft, mode, robot, told, poses)
     return np.inf if laid is None else laid[1].rms
 
 
@@ -135,7 +137,7 @@ def _pushed(
 ) -> dict[str, str]:
     """File → the first one from the same place of the tracker, where poses of both tell it."""
     names = list(dict.fromkeys(labels))
-    laid = laid_over(draft, mode, robot, told)
+    laid = laid_over(draft, mode, robot, told, poses)
     if laid is None:
         return dict.fromkeys(names, names[0])
     number = np.unique(poses, return_inverse=True)[1].astype(float)
@@ -167,13 +169,14 @@ def _merged(
     robot: Robot,
     told: Told,
     sag: float,
+    poses: NDArray[np.str_],
 ) -> dict[str, str]:
     """Station → the first one that stood where it did: their frames have its positions, and those
     of the other, within `sag` [m] of one another.
     """
     names = list(dict.fromkeys(labels))
     alone = {name: name for name in names}
-    laid = laid_over(_with(draft, way, labels), mode, robot, told)
+    laid = laid_over(_with(draft, way, labels), mode, robot, told, poses)
     if laid is None:
         return alone
     cloud, found = laid
@@ -188,7 +191,7 @@ def _merged(
                 out[name] = other
                 break
         out.setdefault(name, name)
-    again = _left_over(_with(draft, way, labels, out), mode, robot, told)
+    again = _left_over(_with(draft, way, labels, out), mode, robot, told, poses)
     return out if again <= np.hypot(AS_WELL * found.rms, sag) else alone
 
 
