@@ -157,7 +157,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "measurements/importers/masses_in_words.py", *tests("measurements/importers", "hung_masses"),
-        a_capacity_taken_for_a_payload=("if not _STATED.search(text) or _NOT_HUNG.search(text):", "if not _STATED.search(text):"),
+        a_capacity_taken_for_a_payload=("or _NOT_HUNG.search(before.group() + said.group()):", "or False:"),
     ),
     *of(
         "measurements/importers/lost_readings.py", *tests("measurements/importers", "lost_readings"),

@@ -28,12 +28,15 @@ _PARTS = re.compile(
     r"(?P<line>[_-])$"
 )
 MANY = 10  # files with other numbers before the mass: no series of masses has so many
-# A capacity, and masses that hang not on the tool or do so in every row.
+# A capacity, and masses that hang not on the tool.
 _NOT_HUNG = re.compile(
     r"max|rated|rating|nominal|capacit|capable|permiss|allow|limit|nenn|zul(?:ä|ae)ss|traglast|"
-    r"up to|bis zu|cell|sensor|robot|arm mass|link|smr|reflector|density|dichte",
+    r"up to|bis zu|cell|sensor|smr|reflector|density|dichte|"
+    r"(?:robot|arm|link)\W*s? (?:mass|weight)|"
+    r"(?:mass|weight) of (?:the |each )?(?:robot|arm|link)",
     re.IGNORECASE,
 )
+_PART = re.compile(r"[^,;|]*$")  # of a sentence, up to where a mass is called so
 _STATED = re.compile(
     rf"(?<![^\W_])(?:{_WORDS})(?![^\W_])[^\d,;|]{{0,30}}(?:{_NUMBER})\s*{_UNIT}"
     rf"|(?<![^\W_])m\s*[=:]\s*(?:{_NUMBER})\s*{_UNIT.replace('<unit>', '<mass>')}"
@@ -90,7 +93,9 @@ def masses_of_name(stem: str, robot: str = "", beside: Sequence[str] = ()) -> Wo
 
 def masses_of_comment(text: str) -> Words:
     """The masses of a line that says what hung on the tool; none where it says anything else."""
-    if not _STATED.search(text) or _NOT_HUNG.search(text):
+    said = _STATED.search(text)
+    before = _PART.search(text[: said.start()]) if said else None
+    if said is None or before is None or _NOT_HUNG.search(before.group() + said.group()):
         return Words()
     found = {_kilograms(m["number"], m["unit"]): m.group() for m in _TOKEN.finditer(text)}
     return Words(tuple(found), tuple(found.values()))

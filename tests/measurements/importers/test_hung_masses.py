@@ -76,7 +76,8 @@ def test_what_stands_in_the_robots_name_is_its_own() -> None:
         ("with a mass of 3 kg", (3.0,)), ("5 kg load", (5.0,)), ("Charge = 4 kg", (4.0,)),
         ("payload 0 kg, later 5 kg", (0.0, 5.0)), ("max. payload 10 kg", ()), ("weighs 5 kg", ()),
         ("Traglast 16 kg", ()), ("load cell 20 kg", ()), ("payload unknown", ()),
-        ("robot mass 33 kg", ()), ("loaded", ()),
+        ("Robot UR10 payload 10 kg", (10.0,)), ("Sensor: Leica, payload 5 kg", (5.0,)),
+        ("robot mass 33 kg", ()), ("mass of the arm: 33 kg", ()), ("loaded", ()),
     ],
 )  # fmt: skip
 def test_masses_of_comments(text: str, masses: tuple[float, ...]) -> None:
