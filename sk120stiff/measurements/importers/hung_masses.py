@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fnmatch import filter as filter_names
 from pathlib import Path
 
 from sk120stiff import units
@@ -38,8 +39,7 @@ def with_mass(sheet: Sheet, told: Told, robot: str = "", beside: Sequence[str] =
     Raises:
         InputError: More than one mass could be meant, or the load is given twice.
     """
-    given = told.payloads.get(sheet.path.name, told.payloads.get(sheet.path.stem))
-    given = told.payloads.get("") if given is None else given
+    given = _told_of(sheet.path, told)
     if (columns := _of_loads(sheet)) and given is not None:
         raise InputError(
             f"the load is given twice: by {OPTION} and in {columns[0]}",
@@ -150,12 +150,31 @@ def refuse_other_files(paths: Sequence[Path], told: Told) -> None:
     """
     names = [name for path in paths for name in (path.name, path.stem)]
     for name in told.payloads:
-        if name and name not in names:
+        if name and name not in names and not filter_names(names, name):
             raise InputError(
                 f"a mass is told of {name!r}, and no file is called that{meant(name, names)}",
                 where=OPTION,
                 remedy=f"The files are {_some([path.name for path in paths])}.",
             )
+
+
+def _told_of(path: Path, told: Told) -> float | None:
+    """The mass that was told of a file: by its name, else by a pattern as ``*_b.csv``, else of all.
+
+    Raises:
+        InputError: Two patterns tell two masses.
+    """
+    for name in (path.name, path.stem):
+        if name in told.payloads:
+            return told.payloads[name]
+    of = {p: m for p, m in told.payloads.items() if p and filter_names([path.name, path.stem], p)}
+    if len(set(of.values())) > 1:
+        raise InputError(
+            f"two masses are told of {path.name}: by {listed(list(of))}",
+            where=OPTION,
+            remedy="Let one pattern alone fit each file.",
+        )
+    return next(iter(of.values()), told.payloads.get(""))
 
 
 def _own(sheet: Sheet) -> Column | None:

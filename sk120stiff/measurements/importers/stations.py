@@ -254,20 +254,17 @@ def _told(
 def _why_one(draft: Draft, names: dict[str, str], few: list[str], sag: float) -> list[str]:
     """Why one frame of the tracker is taken for all files or stations, in a sentence."""
     one = f"The tracker is taken to have stood in one place for all {len(names)}: "
+    masses = "" if draft.loads.taken else f" If masses differed, say them: {OPTION} 'FILE=5 kg'."
     if few:
         shown = [*few[:SHOWN], *([f"{len(few) - SHOWN} more"] if len(few) > SHOWN else [])]
         return [
             f"{one}fewer than {FEWEST} poses, as of {listed(shown)}, tell no frame of their own."
+            f"{masses}"
         ]
     if not sag:
         return []
-    loads = (
-        ""
-        if draft.loads.taken
-        else f" If they were read under other masses, say so: {OPTION} 'FILE=5 kg'."
-    )
     return [
         f"{one}what they differ by is no more than an arm may sag ({1e3 * sag:.2g} mm, "
-        f"{SAGS:.1%} of its length).{loads} If it was moved, add a column station with a label "
+        f"{SAGS:.1%} of its length).{masses} If it was moved, add a column station with a label "
         "for each place."
     ]

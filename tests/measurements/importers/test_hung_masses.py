@@ -166,3 +166,11 @@ def test_masses_that_are_told(tmp_path: Path) -> None:
         mass_told("5", "--payload")
     with pytest.raises(InputError, match="told of 'b', and no file is called that"):
         brought(written(tmp_path, "a.csv"), payloads={"b": 5.0})
+
+
+def test_a_pattern_tells_the_mass_of_many_files(tmp_path: Path) -> None:
+    paths = [written(tmp_path, f"{n}.csv", sunk=k) for k, n in enumerate(("1_a", "2_a", "1_b"))]
+    assert hung(brought(*paths, payloads={"*_a.csv": 0.0, "*_b": 3.0})) == [0.0, 0.0, 3.0]
+    assert hung(brought(*paths, payloads={"": 0.0, "1_b": 3.0})) == [0.0, 0.0, 3.0]
+    with pytest.raises(InputError, match=r"two masses are told of 1_a\.csv: by 1_\* and \*_a"):
+        brought(*paths, payloads={"1_*": 0.0, "*_a": 3.0, "*_b": 3.0})
