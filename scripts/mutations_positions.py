@@ -132,8 +132,37 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "measurements/importers/stations.py", *tests("measurements/importers", "several_files"),
-        frames_for_few_positions=("if left[way] <= AS_WELL * best), (", "if left[way] <= 0.0), ("),
+        frames_for_few_positions=("if left[w] <= np.hypot(AS_WELL * best, sag)), as_well[0])", "if left[w] <= 0.0), (\"station\",))"),
         a_marker_always_where_it_was=("ways += [(\"series\",), (\"station\", \"series\")]", "ways += []"),
+    ),
+    *of(
+        "measurements/importers/stations.py", *tests("measurements/importers", "moved_or_bent"),
+        sag_taken_for_a_tracker_that_moved=("sag = 0.0 if well else SAGS * arm_length(robot)", "sag = 0.0"),
+        same_poses_read_again_for_nothing=("return len(set().union(*at.values())) < sum(map(len, at.values()))", "return False"),
+        every_file_its_own_frame=("if out[other] == other and apart <= sag:", "if False:"),
+    ),
+    *of(
+        "measurements/importers/moved_or_bent.py", *tests("measurements/importers", "moved_or_bent"),
+        a_push_never_seen=("return size if size > LEAST and", "return size if size > 1.0 and"),
+        sag_of_no_spring=("springs = J * np.einsum(\"pik,i->pk\", J, down)[:, None, :]", "springs = 0.0 * J"),
+    ),
+    *of(
+        "measurements/importers/frames.py", *tests("measurements/importers", "moved_or_bent"),
+        repeats_of_a_pose_place_a_tracker=("pairs = {(str(labels[k]), str(poses[k])) for k in rows}", "pairs = {(str(labels[k]), str(k)) for k in rows}"),
+    ),
+    *of(
+        "measurements/importers/hung_masses.py", *tests("measurements/importers", "hung_masses"),
+        files_without_a_mass_taken_for_free=("    if lost:\n        first", "    if False:\n        first"),
+        comment_and_name_at_odds=("if len(said) > 1 and not", "if False and not"),
+    ),
+    *of(
+        "measurements/importers/masses_in_words.py", *tests("measurements/importers", "hung_masses"),
+        a_capacity_taken_for_a_payload=("or _NOT_HUNG.search(before.group() + said.group()):", "or False:"),
+    ),
+    *of(
+        "measurements/importers/lost_readings.py", *tests("measurements/importers", "lost_readings"),
+        nines_within_what_was_measured=("FAR * np.ptp(read, axis=0).max()", "-1.0"),
+        zeros_taken_for_positions=("if zero and zeros.sum() >= AGAIN:", "if False:"),
     ),
     *of(
         "identify/absolute/beside_frames.py", *tests("absolute", "hanging"),

@@ -16,6 +16,7 @@ from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
 from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements.importers import Told, import_readings
+from sk120stiff.measurements.importers.masses_in_words import mass_told
 from sk120stiff.units import parse_values
 
 
@@ -70,6 +71,7 @@ def command(
     load: Load | None = None,
     forces: Axes | None = None,
     wrench: str | None = None,
+    payload: list[str] | None = None,
     coverage: Annotated[float | None, typer.Option(min=0.1)] = None,
     dates: Dates | None = None,
     point: list[str] | None = None,
@@ -110,6 +112,9 @@ def command(
         load: Unit of fx,fy,fz or payload (kg: payload alone).
         forces: Axes of fx,fy,fz and mx,my,mz. [default: base]
         wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
+        payload (MASS): What hung on the tool in all rows, where no column says it: '5 kg'; of
+            several files each by its name, 'a.csv=5 kg', or '*_b.csv=5 kg'. [default: where names
+            of files or lines above the tables say one mass, that]
         coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
         dates: Day (dmy) or month (mdy) first in dates like 10/09/2026, where the file leaves it
             open.
@@ -149,6 +154,7 @@ def command(
             wrench=None if wrench is None else wrench_of(wrench),
             point=one,
             points=several,
+            payloads=_masses(payload or []),
             joints=_names(joints),
             coverage=coverage,
             forces=None if forces is None else forces.value,
@@ -180,6 +186,26 @@ def command(
 
 def _names(text: str | None) -> tuple[str, ...] | None:
     return None if text is None else tuple(name.strip() for name in text.split(","))
+
+
+def _masses(texts: list[str]) -> dict[str, float]:
+    """What hung on the tool [kg] by the names of files, of all files by an empty one.
+
+    Raises:
+        InputError: No mass, or two of one file.
+    """
+    found: dict[str, float] = {}
+    for text in texts:
+        name, _, mass = text.rpartition("=")
+        if name.strip() in found:
+            raise InputError(
+                f"two masses are told of {name.strip() or 'all files'}",
+                where="--payload",
+                remedy="Name the file before each mass: --payload 'a.csv=0 kg' --payload "
+                "'b.csv=5 kg'.",
+            )
+        found[name.strip()] = mass_told(mass, "--payload")
+    return found
 
 
 def _places(texts: list[str]) -> tuple[Array | None, dict[str, Array]]:

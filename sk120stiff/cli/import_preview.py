@@ -138,6 +138,8 @@ def identifiable(found: Imported) -> str:
         text = FOLLOWS[found.mode].format(poses=poses)
         if found.mode == "positions" and found.differences:
             of = "Of several markers" if found.orientation is None else "With their orientations"
+            if len(set(found.draft.marker_of)) == 1 and found.orientation is None:
+                of = "From several places of the tracker"
             text = OF_SEVERAL.format(
                 rows=found.differences, useful=found.useful_poses, poses=poses, of=of
             )

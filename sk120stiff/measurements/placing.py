@@ -174,10 +174,13 @@ def stands_for_all(stations: tuple[str, ...], stood: Index, readings: Measuremen
 
 
 def _lightest(readings: Measurements, said: Absolute, rows: Index) -> Index:
-    """Of these rows those under the least load that their marker was read under at their pose."""
+    """Of these rows those under the least load that their marker was read under at their pose, from
+    each place of the tracker: a file of each load may be from a place of its own.
+    """
     load = np.abs(said.payload) * STANDARD_GRAVITY + np.linalg.norm(readings.wrench[:, :3], axis=1)
-    where = zip((readings.pose[k] for k in rows), (said.markers[k] for k in rows), strict=True)
-    own = np.unique(np.array([f"{pose}\n{marker}" for pose, marker in where]), return_inverse=True)
+    stood = said.stood[1]
+    where = [f"{readings.pose[k]}\n{said.markers[k]}\n{stood[k]}" for k in rows]
+    own = np.unique(np.array(where), return_inverse=True)
     least = np.full(len(own[0]), np.inf)
     np.minimum.at(least, own[1], load[rows])
     return np.asarray(rows[load[rows] <= least[own[1]]])

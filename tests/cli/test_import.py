@@ -247,3 +247,29 @@ def test_positions_before_and_under_the_load_in_two_files(run, tmp_path: Path) -
     assert values == pytest.approx([1.4098e6, 4.0076e5, 9.3528e5], rel=2e-3)
     again = run("import", after, before, *TOLD, "--before", before, "--preview")
     assert again.code == 2 and "and one of positions without load" in again.stderr
+
+
+def test_a_mass_is_told_for_each_file(run, tmp_path: Path) -> None:
+    """One file for each mass; of those whose names say none the option does."""
+    robot = load_robot("motoman_sk120")
+    model = base_model(robot)
+    assert model is not None
+    paths = []
+    for mass in (0.0, 40.0):
+        lines = ["x,y,z,q1,q2,q3,q4,q5,q6"]
+        for a in np.random.default_rng(0).uniform(-0.6, 0.6, (8, 6)).round(4):
+            x, J = robot.placement(a)[:3, 3], robot.jacobian(a)[:3, :3]
+            d = J @ ((J.T @ [0.0, 0.0, -9.80665 * mass]) / [1.4098e6, 4.0076e5, 9.3528e5])
+            lines.append(",".join([*(repr(float(v)) for v in x + d), *map(str, a)]))
+        paths.append(tmp_path / f"run{len(paths)}.csv")
+        paths[-1].write_text("\n".join(lines) + "\n", encoding="utf-8")
+    files, out = [str(path) for path in paths], str(tmp_path / "own.csv")
+    told = ("--payload", "run0.csv=0 kg", "--payload", "run1=40 kg")
+    outcome = run("import", *files, *TOLD, *told, "--out", out, "--json")
+    assert outcome.code == 0, outcome.stderr
+    assert outcome.document["largest_load_N"] == pytest.approx(9.80665 * 40.0)
+    assert (outcome.document["mode"], outcome.document["useful_poses"]) == ("load pairs", 8)
+    found = run("identify", out, "--json").document["parameters"]
+    assert [p["value"] for p in found][1:] == pytest.approx([4.0076e5, 9.3528e5], rel=2e-3)
+    refused = run("import", *files, *TOLD, *told[:2], "--payload", "run0.csv=1 kg", "--out", out)
+    assert refused.code == 2 and "two masses are told of run0.csv" in refused.stderr

@@ -119,6 +119,7 @@ class Sheet:
         notes: What was decided or taken for granted, in sentences.
         marker: The one of several markers that these are readings of, where one was chosen.
         zero: Of positions with and without load: do rows of a pose share a zero reading?
+        remarks: Comments and lines above the table, with their numbers.
     """
 
     path: Path
@@ -135,6 +136,7 @@ class Sheet:
     notes: tuple[str, ...] = ()
     marker: str | None = None
     zero: Literal["shared", "separate"] = "shared"
+    remarks: tuple[tuple[int, str], ...] = ()
 
     def get(self, meaning: str) -> Column | None:
         """The column of that meaning."""

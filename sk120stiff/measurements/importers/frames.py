@@ -6,6 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError, Refusal, listed
@@ -117,21 +118,38 @@ def _unloaded(draft: Draft, mode: Mode) -> Index:
     return np.asarray(rows, dtype=np.intp)
 
 
-def left_over(draft: Draft, mode: Mode, robot: Robot, told: Told) -> float:
-    """What is left of the positions [m]; infinite where no arm leaves as much, or few tell it."""
+def laid_over(
+    draft: Draft, mode: Mode, robot: Robot, told: Told, poses: NDArray[np.str_]
+) -> tuple[Cloud, Registration] | None:
+    """Positions with the robot laid onto them; None where no arm leaves as much, or a station or
+    a series has fewer poses than tell it.
+
+    Args:
+        draft, mode, robot, told: As `placed` has them.
+        poses: (N,) label of the pose of every row: what was read twice at one tells no more.
+    """
     rows, (point, known) = _unloaded(draft, mode), points_of(draft, told)
     rows = rows[np.isfinite(draft.measured[rows]).all(axis=1)]
-    stood = stood_of(draft)[rows]
-    if len(rows) < FEWEST or np.bincount(stood, minlength=int(stood_of(draft).max()) + 1).min() < (
-        FEWEST
-    ):
-        return np.inf
+    stood = stood_of(draft)
+    of = [np.array(own) for own in (draft.stations, draft.series) if own is not None]
+    counts = [count for own in of for count in counted_poses(poses, own, rows).values()]
+    if min([len(rows), *counts]) < FEWEST:
+        return None
     x, names = draft.measured[rows], np.array(draft.mounts)[rows]
     group = np.unique(names, return_inverse=True)[1] * (not known)
-    cloud = Cloud(robot, draft.joints.values[rows], x, point[rows], names, group, stood)
-    rms = cloud.placed(fit_marker=not known)[0].rms
+    cloud = Cloud(robot, draft.joints.values[rows], x, point[rows], names, group, stood[rows])
+    found = cloud.placed(fit_marker=not known)[0]
     spread = float(np.sqrt(((x - x.mean(axis=0)) ** 2).sum(axis=1).mean()))
-    return rms if rms < FITS * spread else np.inf
+    return (cloud, found) if found.rms < FITS * spread else None
+
+
+def counted_poses(poses: NDArray[np.str_], labels: NDArray[np.str_], rows: Index) -> dict[str, int]:
+    """Label → of how many poses these rows are; all of N labels, and 0 where no row is."""
+    pairs = {(str(labels[k]), str(poses[k])) for k in rows}
+    counts = dict.fromkeys((str(label) for label in labels), 0)
+    for label, _ in pairs:
+        counts[label] += 1
+    return counts
 
 
 def stood_of(draft: Draft) -> Index:

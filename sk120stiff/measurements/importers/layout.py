@@ -314,7 +314,6 @@ def sheet_of(
     frame = next(
         (m[1] for _, t in (*grid.comments, *layout.above) if (m := _FRAME.search(t))), None
     )
-    unread = say_unread(layout.headers, rows, axes)
     return Sheet(
         path=source.path,
         title=title,
@@ -331,8 +330,9 @@ def sheet_of(
             *((f"Read as {grid.how}.",) if grid.how else ()),
             *notes,
             *layout.notes,
-            *[unread][: bool(unread)],
+            *filter(None, [say_unread(layout.headers, rows, axes)]),
         ),
+        remarks=(*grid.comments, *layout.above),
     )
 
 

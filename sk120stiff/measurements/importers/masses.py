@@ -13,6 +13,7 @@ _LOAD = (
 )
 _UNMISTAKEN = frozenset(_PAYLOAD.split("|"))
 _KNOWN = frozenset((*_UNMISTAKEN, *_LOAD.split("|")))
+LOAD_WORDS = _KNOWN  # in small letters, for a mass on the tool wherever its unit is one
 Meanings = list[tuple[str, float] | None]
 
 

@@ -25,9 +25,17 @@ from sk120stiff.measurements.importers.formats import FORMATS
 from sk120stiff.measurements.importers.frames import axes, placed
 from sk120stiff.measurements.importers.header_rows import in_one_row
 from sk120stiff.measurements.importers.holds import as_repeats
+from sk120stiff.measurements.importers.hung_masses import (
+    doubts_of_names,
+    refuse_other_files,
+    say_masses,
+    with_mass,
+    with_masses_of_all,
+)
 from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
 from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
+from sk120stiff.measurements.importers.lost_readings import without_lost
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.orientation import (
@@ -46,7 +54,7 @@ from sk120stiff.measurements.importers.several_markers import (
     refuse_several_points,
     with_places,
 )
-from sk120stiff.measurements.importers.stations import with_stations
+from sk120stiff.measurements.importers.stations import loads_apart, with_stations
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
 from sk120stiff.measurements.reading import assembled
@@ -146,17 +154,21 @@ def import_readings(
     _refuse_beside_several(paths, {
         "--joints-file": joints_file, "--loads-file": loads_file, "--before": before,
     })  # fmt: skip
+    refuse_other_files([Path(one) for one in paths], told)
     sheets = [
         _sheet(
             Source(
                 Path(one), robot.actuated, "points", tuple(columns) if columns else None,
                 sheet, topic, marker,
             ),
-            formats, format_name, joints_file, loads_file, before, told,
+            formats, format_name, joints_file, loads_file, before, told, robot.name,
+            [Path(each).stem for each in paths],
         )
         for one in paths
     ]  # fmt: skip
+    sheets = with_masses_of_all(sheets)
     whole = sheets[0] if len(sheets) == 1 else joined(sheets)
+    whole = dataclasses.replace(whole, notes=(*whole.notes, *say_masses(sheets)))
     draft = drafted(whole, told, robot.actuated, prismatic)
     held = standstills(draft) or as_repeats(draft)
     if held is not None:
@@ -172,6 +184,8 @@ def import_readings(
     if mode != "positions":
         refuse_several_points(draft)
     draft = with_stations(draft, mode, robot, told)
+    if mode == "load pairs" and loads_apart(draft):
+        mode = "positions"  # a difference between two places of the tracker is none of the arm
     laid = placed(draft, mode, robot, told)
     if mode == "load pairs":  # differences would leave out how the load turned the tool
         of_pairs = understood(draft, robot, told, "positions", laid.fitted, laid.rows)
@@ -211,6 +225,7 @@ def import_readings(
             *doubts,
             *([] if laid.fitted else unit_doubts(draft, robot)),
             *blank_doubts(draft),
+            *(doubts_of_names(sheets) if told.wrench is None else []),
         ),
         said=tuple(said),
     )
@@ -245,15 +260,19 @@ def _sheet(
     loads_file: Path | None,
     before: Path | None,
     told: Told,
+    robot: str,
+    beside: Sequence[str],
 ) -> Sheet:
     whole = opened(source)
     importer, why = formats.chosen(whole, name)
-    sheet = importer.read(whole)
+    sheet = without_lost(importer.read(whole))
     if why == "as told":
         sheet = dataclasses.replace(sheet, title=importer.title, why=why)
     if before is not None:
         free = opened(dataclasses.replace(source, path=before, sheet=None))
-        sheet = with_before(sheet, formats.chosen(free, name)[0].read(free), told)
+        sheet = with_before(sheet, without_lost(formats.chosen(free, name)[0].read(free)), told)
+    if loads_file is None or told.payloads:
+        sheet = with_mass(sheet, told, robot, beside)
     others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
     own = any(c.meaning.startswith("joint ") for c in sheet.columns)
     if joints_file is None and not own and not source.path.is_dir() and is_workbook(source.data):

@@ -41,6 +41,8 @@ class Told:
         wrench: (6,) what the column ``load`` counts, N and N·m, base axes.
         point: (3,) where the marker sits in the tool frame, m.
         points: The same of several markers, by their names.
+        payloads: What hung on the tool [kg] by the name of the file or a pattern of names, of all
+            files by ``""``.
         joints: A column, or a linear expression of columns, for each actuated joint.
         coverage: What stated uncertainties are multiples of; as their header says by default.
         forces: Axes of ``fx fy fz`` (``mx my mz``): ``"base"`` or ``"tool"``; base unless told.
@@ -53,6 +55,7 @@ class Told:
     wrench: Array | None = None
     point: Array | None = None
     points: Mapping[str, Array] = field(default_factory=dict)
+    payloads: Mapping[str, float] = field(default_factory=dict)
     joints: tuple[str, ...] | None = None
     coverage: float | None = None
     dates: DateOrder | None = None

@@ -1,0 +1,166 @@
+"""Which mass hung on the tool, as names of files and comments above a table say it.
+
+A number counts with its unit alone: the 10 of a UR10 and the 210 of a KR210 are no masses.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.masses import LOAD_WORDS, MASSES
+
+_NUMBER = r"\d+(?:[.,]\d+|p\d+)?"  # 2.5, 2,5 and 2p5
+_UNIT = r"(?P<unit>[kK][gG]|g|lbs?)(?![^\W_])"  # G is no gram
+_TOKEN = re.compile(rf"(?<![\d.,])(?P<number>{_NUMBER})[ _-]?{_UNIT}")
+_FORCE = re.compile(r"(?<![\d.,])\d+(?:[.,]\d+)?[ _-]?(?:N|kN|daN)(?![^\W_])")
+_WORDS = "|".join(sorted(LOAD_WORDS, key=len, reverse=True))
+_LOAD = frozenset(word for word in LOAD_WORDS if " " not in word) | {"m", "w", "with", "mit"}
+# Before two numbers the first of which counts something: pose_2_5kg is pose 2, with 5 kg.
+_COUNTED = re.compile(
+    "poses?|points?|pt|p|pos(?:ition)?|runs?|rep(?:eat)?|trial|test|file|set|no|nr|stellung|"
+    "messung|punkt|wdh|day|config(?:uration)?|meas(?:urement)?|series|station|step"
+)
+_PARTS = re.compile(
+    r"(?:(?P<word>[^\W\d_]+)(?P<gap>[ _=-]?)|(?P<date>\d[ _.-]))?(?<!\d)(?P<whole>0|[1-9]\d?)"
+    r"(?P<line>[_-])$"
+)
+MANY = 10  # files with other numbers before the mass: no series of masses has so many
+# A capacity, and masses that hang not on the tool.
+_NOT_HUNG = re.compile(
+    r"max|rated|rating|nominal|capacit|capable|permiss|allow|limit|nenn|zul(?:ä|ae)ss|traglast|"
+    r"up to|bis zu|cell|sensor|smr|reflector|density|dichte|"
+    r"(?:robot|arm|link)\W*s? (?:mass|weight)|"
+    r"(?:mass|weight) of (?:the |each )?(?:robot|arm|link)",
+    re.IGNORECASE,
+)
+_PART = re.compile(r"[^,;|]*$")  # of a sentence, up to where a mass is called so
+_STATED = re.compile(
+    rf"(?<![^\W_])(?:{_WORDS})(?![^\W_])[^\d,;|]{{0,30}}(?:{_NUMBER})\s*{_UNIT}"
+    rf"|(?<![^\W_])m\s*[=:]\s*(?:{_NUMBER})\s*{_UNIT.replace('<unit>', '<mass>')}"
+    rf"|(?<![\d.,])(?:{_NUMBER})\s*{_UNIT.replace('<unit>', '<before>')}\s+(?:{_WORDS})(?![^\W_])",
+    re.IGNORECASE,
+)
+_WITHOUT = re.compile(
+    r"(?<![^\W\d_])(?:(?:un|no|without|zero|ohne|sans|senza|sin)[ _-]?"
+    r"(?:load(?:ed)?|payload|last|belast(?:et|ung)|charge|carico|carga)|unbelastet|lastfrei|leer|"
+    r"empty|free)(?![^\W\d_])",
+    re.IGNORECASE,
+)
+
+
+class Words(NamedTuple):
+    """Masses that words hold [kg], as they stand there; several readings of one are several."""
+
+    masses: tuple[float, ...] = ()
+    texts: tuple[str, ...] = ()
+
+
+def masses_of_name(stem: str, robot: str = "", beside: Sequence[str] = ()) -> Words:
+    """The masses in the name of a file without its ending, of which one alone counts.
+
+    Args:
+        stem: As ``UR10_payload_5kg``.
+        robot: The robot's own name: what stands there is the robot's (``iiwa_14kg``).
+        beside: Names of the other files, which tell whether a number before counts the files.
+
+    A mass behind a word such as *payload* goes before one that stood there alone. Of ``2_5kg``
+    both 5 kg and 2.5 kg are given, unless the word before tells.
+    """
+    called: list[tuple[float, str]] = []
+    alone: list[tuple[float, str]] = []
+    own = _plain(robot)
+    for match in _TOKEN.finditer(stem):
+        before = stem[: match.start()]
+        glued = re.search(r"[^\W\d_]+$", before)
+        word = re.search(r"([^\W\d_]+)[\W_]*$", before)
+        called_so = word is not None and word[1].lower() in _LOAD
+        if (glued and not called_so) or (word and _NOT_HUNG.fullmatch(word[1])):
+            continue  # the robot's own: KR16kg, max10kg
+        if len(own) > 0 and _plain(match.group()) in own:
+            continue
+        values, text, split = _with_a_part_before(before, match, beside)
+        taken = called if called_so or split or called else alone
+        taken += [(value, text) for value in values]
+    found = called or alone
+    return Words(
+        tuple(dict.fromkeys(value for value, _ in found)),
+        tuple(dict.fromkeys(text for _, text in found)),
+    )
+
+
+def masses_of_comment(text: str) -> Words:
+    """The masses of a line that says what hung on the tool; none where it says anything else."""
+    said = _STATED.search(text)
+    before = _PART.search(text[: said.start()]) if said else None
+    if said is None or before is None or _NOT_HUNG.search(before.group() + said.group()):
+        return Words()
+    found = {_kilograms(m["number"], m["unit"]): m.group() for m in _TOKEN.finditer(text)}
+    return Words(tuple(found), tuple(found.values()))
+
+
+def forces_of_name(stem: str) -> tuple[str, ...]:
+    """Forces in the name of a file, which say no direction."""
+    return tuple(match.group() for match in _FORCE.finditer(stem))
+
+
+def says_without(stem: str) -> bool:
+    """Does the name of a file say that nothing hung there?"""
+    return _WITHOUT.search(stem) is not None
+
+
+def mass_told(text: str, where: str) -> float:
+    """Kilograms of ``5 kg``, ``500 g`` or ``10 lb``.
+
+    Raises:
+        InputError: No mass with its unit.
+    """
+    match = _TOKEN.fullmatch(text.strip())
+    if match is None:
+        raise InputError(
+            f"{text.strip()!r} is no mass",
+            where=where,
+            remedy="Write it with its unit, like '5 kg'; of one file of several 'a.csv=5 kg'.",
+        )
+    return _kilograms(match["number"], match["unit"])
+
+
+def _with_a_part_before(
+    before: str, match: re.Match[str], beside: Sequence[str]
+) -> tuple[list[float], str, bool]:
+    """The mass, its text, and whether a word of loads stands before a number in two parts.
+
+    A number and a line before the mass may be its whole part, as file names bear no point. It is
+    none behind a word that counts, in a type (UR10), in a date, or where it counts the files.
+    """
+    plain = [_kilograms(match["number"], match["unit"])]
+    parts = _PARTS.search(before)
+    if parts is None or not match["number"].isdigit():
+        return plain, match.group(), False
+    word, called = (parts["word"] or "").lower(), (parts["word"] or "").lower() in _LOAD
+    named = bool(word) and not called and not parts["gap"]
+    if named or _COUNTED.fullmatch(word) or parts["date"] or _counts(before, parts, beside):
+        return plain, match.group(), False
+    whole = [_kilograms(f"{parts['whole']}.{match['number']}", match["unit"])]
+    text = f"{parts['whole']}{parts['line']}{match.group()}"
+    if called and parts["line"] == "_":
+        return whole, text, True
+    return [*plain, *whole], text, called
+
+
+def _counts(before: str, parts: re.Match[str], beside: Sequence[str]) -> bool:
+    """Does this number count the files? Some have a zero before it, or there are many of them."""
+    shape = re.compile(rf"{re.escape(before[: parts.start('whole')])}(\d+){parts['line']}\d")
+    numbers = {found[1] for name in beside if (found := shape.match(name))}
+    return len(numbers) >= MANY or any(n[0] == "0" and len(n) > 1 for n in numbers)
+
+
+def _kilograms(number: str, unit: str) -> float:
+    value = float(number.replace(",", ".").replace("p", "."))
+    return value * MASSES[unit.lower()]
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[\W_]+", "", text).lower()
