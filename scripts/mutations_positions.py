@@ -215,7 +215,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "data_checks/turned_axes.py", *tests("data_checks", "turned_axes"),
         axes_turned_the_other_way=("turned by {degrees:g} deg", "turned by {-degrees:g} deg"),
-        loads_left_as_they_are=("        if not both:", "        if True:"),
+        loads_left_as_they_are=("        if what != \"d\":", "        if False:"),
     ),
     *of(
         "identify/absolute/not_named.py", *tests("absolute", "not_named"),
