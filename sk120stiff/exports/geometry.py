@@ -108,7 +108,10 @@ def geometry_of(model: Model) -> Geometry:
         rows = [index[name] for name in effect.coordinates(robot)]
         if effect.of_marker:
             of_marker[rows] = True
-            how = f"frame {robot.tool_frame}{MEASURED}: the tool frame stays at the flange"
+            how = (
+                f"frame {robot.tool_frame}{MEASURED}, in which the measured point stands where the "
+                "readings state it (point:); the tool frame stays at the flange"
+            )
         by_parameter[rows, part] += shifts[0]
         carried += [Told(effect.id, how)] if acts else []
     shift = by_parameter @ model.values
