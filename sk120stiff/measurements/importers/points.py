@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
+from sk120stiff.measurements.importers.headerless import of_other_columns, shaped
 from sk120stiff.measurements.importers.layout import (
     POSITION,
+    SEARCHED,
     Layout,
     layout_of,
-    of_other_columns,
-    shaped,
     sheet_of,
 )
 from sk120stiff.measurements.importers.words import kind_of
@@ -39,6 +40,8 @@ class Points:
             return Guess(0.4, "its columns are named")
         if _joints_alone(source) is not None:
             return Guess(0.05, "its columns are joints")
+        if source.role == "points" and _places(source):
+            return Guess(0.05, "its headers name positions")
         count, named, _ = shaped(source)
         if _names(source, count) is None or of_other_columns(source):
             return NO
@@ -51,6 +54,8 @@ class Points:
             InputError: Positions and joints without headers, which may come in either order.
         """
         layout = layout_of(source)
+        if layout is None and source.role == "points" and (places := _places(source)):
+            raise _several_places(source, places)
         if layout is None and (alone := _joints_alone(source)) is not None:
             _refuse_some_coordinates(source, alone)
             raise _no_positions(source, alone)
@@ -82,6 +87,28 @@ class Points:
 def _joints_alone(source: Source) -> Layout | None:
     """The table of joints in a file of points that names no positions."""
     return layout_of(replace(source, role="joints")) if source.role == "points" else None
+
+
+def _places(source: Source) -> list[str]:
+    """Composed headers of positions of which none could be chosen, as messages name them."""
+    for row in source.grid.rows[:SEARCHED]:
+        groups = [g for g in groups_of(row, source.actuated) if g.family == "place"]
+        if groups:
+            return shown(groups, row)
+    return []
+
+
+def _several_places(source: Source, places: list[str]) -> InputError:
+    topics = "/" in places[0]
+    return InputError(
+        f"{listed(places, 'or')} may be the positions that were measured"
+        if len(places) > 1
+        else f"{places[0]} are commanded or nominal, and no measured position stands beside them",
+        where=str(source.path),
+        remedy=("Say which: --topic with what stands before position/x. " if topics else "")
+        + "Name all columns with --columns (x,y,z for those that were measured, a dash for one "
+        "that is not needed), or take the others out.",
+    )
 
 
 def _no_positions(source: Source, joints: Layout) -> InputError:

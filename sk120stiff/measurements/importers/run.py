@@ -48,6 +48,7 @@ from sk120stiff.measurements.importers.several_markers import (
 )
 from sk120stiff.measurements.importers.stations import with_stations
 from sk120stiff.measurements.importers.told import Mode, Told
+from sk120stiff.measurements.importers.told_mass import with_told_mass
 from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
 from sk120stiff.measurements.reading import assembled
 from sk120stiff.measurements.registration import Registration
@@ -263,7 +264,8 @@ def _sheet(
             continue
         more = opened(Source(path, source.actuated, role))
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return named(unfolded(understood_words(of_marker(sheet, source.marker), told)))
+    sheet = understood_words(of_marker(sheet, source.marker), told)
+    return named(unfolded(with_told_mass(sheet, told)))
 
 
 def opened(source: Source) -> Source:

@@ -134,7 +134,12 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
 
 
 def is_unit(text: str) -> bool:
-    """Is this the name of a unit, that of a temperature, a mass or a dial gauge among them?"""
+    """Is this the name of a unit, that of a temperature, a mass or a dial gauge among them?
+
+    A number alone is none: it counts, as in ``position[1]``.
+    """
+    if text.strip().isdigit():
+        return False
     known = text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
     return known or counted_unit(text) is not None
 
