@@ -120,14 +120,15 @@ def with_compounds(
         notes += [why] if why else []
         prefix = f"{MEASURED} " if family in families else ""  # beside plain x, y, z
         for k, each in group.columns.items():
-            out[k], units_of[k] = (prefix + each.meaning, 1.0), each.unit or units_of[k]
+            out[k], units_of[k] = (prefix + each.meaning, 1.0), units_of[k] or each.unit
         for other in rivals:
             if other is not group and family == "joint" and other.said == COMMANDED:
                 for k, each in other.columns.items():
                     out[k] = f"{COMMANDED_JOINT} {each.meaning[6:]}", 1.0
     for k, known in enumerate(out):  # Temp_C: understood but for the unit
-        if known and units_of[k] is None and (more := compound(headers[k], actuated)):
-            units_of[k] = more.unit if more.meaning == known[0] else None
+        if known and known[0] == "temperature" and units_of[k] is None:
+            more = compound(headers[k], actuated)
+            units_of[k] = more.unit if more else None
     hung = [k for k, name in enumerate(headers) if out[k] is None and is_hung_mass(name)]
     if len(hung) == 1 and not _families(out) & {"load"} and units[hung[0]] is None:
         out[hung[0]] = "payload", 1.0
@@ -223,4 +224,3 @@ def _as_subscript(header: str, known: Compound, plain: set[str]) -> Compound:
     if not others & plain:
         return known
     return Compound(known.meaning, None, MEASURED, known.of, known.instrument)
-

@@ -1,4 +1,4 @@
-"""Headers that programs compose of several words, read from behind: ``/vicon/tool/pose/position/x``.
+"""Headers of several words, read from behind: ``/vicon/tool/pose/position/x``, ``q1_meas_rad``.
 
 A topic, an instrument or a carrier stands before what was read, a number of the joint or an axis
 behind it, a qualifier (measured, target) and a unit somewhere between. Without these the rest is a
@@ -17,38 +17,41 @@ from sk120stiff.measurements.importers.masses import MASSES
 from sk120stiff.measurements.importers.words import kind_of, meaning_of, unit_of_header
 
 MEASURED, COMMANDED = "measured", "commanded"
+
+
+def _set(words: str) -> frozenset[str]:
+    return frozenset(words.split())
+
+
 _QUALIFIERS = {
-    word: said
-    for said, words in (
-        (MEASURED, "meas measured actual act ist msr feedback fbk"),
-        (COMMANDED, "cmd command commanded target desired des ref reference nom nominal soll "
-         "setpoint goal"),
-    )
-    for word in words.split()
-}  # fmt: skip
+    **dict.fromkeys(_set("meas measured actual act ist msr feedback fbk"), MEASURED),
+    **dict.fromkeys(
+        _set(
+            "cmd command commanded target desired des ref reference nom nominal soll setpoint goal"
+        ),
+        COMMANDED,
+    ),
+}
 # What stands before a reading: instruments of places, those of forces, and what carries them.
-INSTRUMENTS = frozenset(
+INSTRUMENTS = _set(
     "lt tracker lasertracker leica faro radian vicon optitrack mocap motive qualisys qtm cmm romer "
-    "natnet".split()
+    "natnet"
 )
-_BEFORE = INSTRUMENTS | frozenset(
+_BEFORE = INSTRUMENTS | _set(
     "ft fts sensor netft ati wrench loadcell robot arm rtde controller encoder enc laser tcp ee "
-    "flange tool marker smr joint joints state states pose".split()
+    "flange tool marker smr joint joints state states pose"
 )
 # Words of a rate, an effort or an uncertainty: a header that holds one is of no value named here.
-_OTHER = frozenset(
+_OTHER = _set(
     "vel velocity velocities speed acc accel acceleration effort efforts current currents voltage "
-    "error err std sigma cov covariance twist gripper finger fingers bias offset limit qd qdd "
-    "temperature_limit".split()
+    "error err std sigma cov covariance twist gripper finger fingers bias offset limit qd qdd"
 )
-_QUANTITIES = frozenset(  # parts of a topic that begin what was read
+_QUANTITIES = _set(  # parts of a topic that begin what was read
     "position positions translation point orientation rotation quaternion force torque stamp "
-    "timestamp".split()
+    "timestamp"
 )
-_ENDS = frozenset("secs sec x y z w".split())  # what may follow them, numbers apart
-_TAILS = frozenset(
-    "m mm um rad mrad deg N kN Nm Nmm s ms us ns kg C degC K".split()
-)  # units behind the last stroke
+_POSITION_OF = _set("position pos angle value")
+_TAILS = _set("m mm um rad mrad deg N kN Nm Nmm s ms us ns kg C degC K")  # behind the last stroke
 _CELSIUS = frozenset(("C", "degC", "°C", "ºC", "K"))
 _WARMTH = re.compile(r"t|ta|t amb|t room|(?:.* )?(?:temp|amb|ambient|air)(?: .*)?")
 _HUNG = re.compile(  # words of a mass on the tool, without a unit
@@ -133,42 +136,45 @@ def may_be_mass(name: str) -> bool:
 
 
 def _words(text: str) -> list[str]:
-    """Words of a header; a number behind a whole word is one of its own: position0, q1."""
-    text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
-    text = re.sub(r"(?<=[A-Za-z]{4})(?=\d)", " ", text)
-    return [word for word in re.split(r"[\s_\-:()\[\]{},]+", text) if word]
+    """Words of a header, units whole; a number behind a word is one of its own, but not in q1."""
+    out: list[str] = []
+    for word in re.split(r"[\s_\-:()\[\]{},]+", text):
+        if word not in _TAILS:
+            word = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z]{4})(?=\d)", " ", word)
+        out += word.split()
+    return out
 
 
 def _of_topic(path: list[str], unit: str | None, actuated: tuple[str, ...]) -> Compound | None:
     """The reading at the end of a topic: what it is called, with an axis or a number behind."""
     joint = meaning_of(path[-2].strip(), actuated)
     if path[-1].lower() in _POSITION_OF and joint and joint[0].startswith("joint "):
-        return Compound(joint[0], unit, "", **_context(path[:-2]))
+        return _behind(path[:-2], joint[0], unit)
     for k in range(max(len(path) - 2, 0), len(path)):
         words = [word.lower() for word in _words(" ".join(path[k:]))]
         if words[0] in _QUANTITIES and len(words) <= 2:
             break
     else:
         last = _of_words(_words(path[-1]), path[-1], unit, actuated)
-        return replace(last, **_context(path[:-1], last.of)) if last else None
-    if len(words) == 2 and words[1] not in _ENDS and not words[1].isdigit():
-        return None
-    context = _context(path[:k])
+        if last is None:
+            return None
+        above = [*path[:-1], *([last.of] if last.of else [])]
+        return replace(_behind(above, last.meaning, last.unit), said=last.said)
     what, behind = words[0], words[1] if len(words) == 2 else ""
-    if what in ("stamp", "timestamp"):
-        return Compound("time", unit, "", **context) if behind in ("", "sec", "secs") else None
+    if what in ("stamp", "timestamp") and behind in ("", "sec", "secs"):
+        return _behind(path[:k], "time", unit)
     if what in ("position", "positions") and behind.isdigit():
-        return Compound(f"joint {int(behind)}", unit, "", **context, counted=True)
+        return replace(_behind(path[:k], f"joint {int(behind)}", unit), counted=True)
     prefix = {"orientation": "q", "rotation": "q", "quaternion": "q", "force": "f", "torque": "m"}
     if behind not in ("x", "y", "z", "w"):
         return None
-    return Compound(f"{prefix.get(what, '')}{behind}", unit, "", **context)
+    return _behind(path[:k], f"{prefix.get(what, '')}{behind}", unit)
 
 
-def _context(path: list[str], more: str = "") -> dict[str, object]:
-    of = "/".join([*path, *([more] if more else [])])
+def _behind(path: list[str], meaning: str, unit: str | None) -> Compound:
+    """A reading behind such parts of a topic."""
     words = {word.lower() for part in path for word in _words(part)}
-    return {"of": of, "instrument": bool(words & INSTRUMENTS)}
+    return Compound(meaning, unit, "", "/".join(path), bool(words & INSTRUMENTS))
 
 
 def _of_words(
@@ -210,9 +216,6 @@ def _of_words(
     instrument = bool(set(before) & INSTRUMENTS)
     meaning = meant[0].removeprefix("measured ")
     return Compound(meaning, unit, stated, "_".join(before), instrument)
-
-
-_POSITION_OF = frozenset("position pos angle value".split())
 
 
 def _fits(found: Compound) -> bool:

@@ -57,4 +57,6 @@ def with_joint_names(
     for k, name in told.items():
         out[k] = (f"joint {actuated.index(name) + 1}", 1.0) if name in actuated else None
     first = next(k for k, name in told.items() if name == actuated[0])
-    return out, [f"Joints are told by the columns of their names: {headers[first]} is {actuated[0]}."]
+    return out, [
+        f"Joints are told by the columns of their names: {headers[first]} is {actuated[0]}."
+    ]

@@ -80,7 +80,7 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
     robot = f"The actuated joints are {', '.join(actuated)}."
     if not numbered:
         raise InputError(
-            "this file holds no joint values" + _may_be(sheet, n, "; these may each be: {}"),
+            "this file holds no joint values" + _may_be(sheet, n),
             where=str(sheet.path),
             remedy="Give the file that does: --joints-file FILE; or name its columns with "
             f"--joints. {robot}",
@@ -108,13 +108,11 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
     return [numbered[k] for k in range(start, start + n)]
 
 
-def _may_be(sheet: Sheet, joints: int, words: str) -> str:
-    """Composed headers of joints, of which none was chosen, in words; empty where there are none."""
+def _may_be(sheet: Sheet, joints: int) -> str:
+    """Composed headers of joints of which none was chosen, in words; empty where none are."""
     headers = [c.header for c in sheet.spare]
     groups = [g for g in groups_of(headers, joints=joints) if g.family == "joint"]
-    return words.format(listed([", ".join(names) for names in shown(groups, headers)], "or")) * bool(
-        groups
-    )
+    return f"; these may each be: {listed(shown(groups, headers), 'or')}" if groups else ""
 
 
 def _as_told(sheet: Sheet, told: tuple[str, ...], actuated: tuple[str, ...]) -> list[Column]:

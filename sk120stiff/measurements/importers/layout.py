@@ -168,6 +168,7 @@ def _laid_out(
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
     known, units, told = _understood(source, headers, meaning, grid.rows[first:], units)
+    places = [p or f"the header, {stated}" * bool(u) for p, u in zip(places, units, strict=True)]
     meanings = as_measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):
@@ -195,9 +196,7 @@ def _understood(
     units_of = list(stated) if stated is not None else [unit for _, unit in named]
     known = [meaning(name, source.actuated) if name else None for name in names]
     known = with_gauges(names, with_states(names, known))
-    known, units_of, notes = with_compounds(
-        headers, known, units_of, source.actuated, source.topic
-    )
+    known, units_of, notes = with_compounds(headers, known, units_of, source.actuated, source.topic)
     known, units_of = with_masses(names, known, units_of)
     known = with_torques(known, units_of)
     known = with_vendor_joints(names, known, source.actuated)

@@ -12,14 +12,18 @@ from sk120stiff.arrays import Array
 from sk120stiff.measurements.importers.grid import is_number
 
 Meanings = list[tuple[str, float] | None]
-_NUMBER = re.compile(r"(?P<of>.*?)[\s_]*[\[(]?(?P<row>[0-4])[\])]?[\s_,]*[\[(]?(?P<col>[0-4])[\])]?")
+_NUMBER = re.compile(
+    r"(?P<of>.*?)[\s_]*[\[(]?(?P<row>[0-4])[\])]?[\s_,]*[\[(]?(?P<col>[0-4])[\])]?"
+)
 _PLACES = frozenset(("x", "y", "z", "dx", "dy", "dz", "measured x", "nominal x", "loaded x"))
 ROTATION = 1e-3  # by which a row of a rotation may be off a unit vector, as it is rounded
 LOOKED_AT = 50  # rows of the table that tell
 
 
 def with_matrices(
-    names: Sequence[str], meanings: Sequence[tuple[str, float] | None], rows: Sequence[Sequence[str]]
+    names: Sequence[str],
+    meanings: Sequence[tuple[str, float] | None],
+    rows: Sequence[Sequence[str]],
 ) -> tuple[Meanings, list[str]]:
     """Meanings with the position and the rotation of a pose that is written as a matrix.
 
