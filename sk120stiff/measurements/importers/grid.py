@@ -119,7 +119,7 @@ def _no_text(path: Path) -> InputError:
     return InputError(
         "this is no text, and no format that is known",
         where=str(path),
-        remedy="Export the readings as text (CSV), .xlsx, .mat (version 7) or a ROS 2 bag.",
+        remedy="Export the readings as text (CSV), .xlsx, .mat (version 7), .npz or a ROS 2 bag.",
     )
 
 

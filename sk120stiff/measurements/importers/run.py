@@ -30,6 +30,7 @@ from sk120stiff.measurements.importers.load_pairs import unfolded
 from sk120stiff.measurements.importers.log import standstills
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
+from sk120stiff.measurements.importers.numpy_archive import is_numpy, numpy_grid
 from sk120stiff.measurements.importers.orientation import (
     Orientation,
     understood,
@@ -269,11 +270,13 @@ def _sheet(
 
 
 def opened(source: Source) -> Source:
-    """The source with its rows, where a workbook or a MATLAB file holds them, or in two headers."""
+    """The source with its rows, where a workbook, MATLAB or numpy holds them, or in two headers."""
     if is_workbook(source.data):
         source = dataclasses.replace(source, given=workbook_grid(source))
     elif is_matlab(source.data):
         source = dataclasses.replace(source, given=matlab_grid(source))
+    elif is_numpy(source.data):
+        source = dataclasses.replace(source, given=numpy_grid(source))
     return with_numbered_markers(in_one_row(source))
 
 
