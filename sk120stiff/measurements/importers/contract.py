@@ -118,7 +118,8 @@ class Sheet:
         frame: The axes that the file says positions are in.
         notes: What was decided or taken for granted, in sentences.
         marker: The one of several markers that these are readings of, where one was chosen.
-        zero: Of positions with and without load: do rows of a pose share a zero reading?
+        zero: Of readings with and without load: do rows of a pose share a zero reading?
+        subtracted: Are displacements such readings, one less the other?
     """
 
     path: Path
@@ -135,6 +136,7 @@ class Sheet:
     notes: tuple[str, ...] = ()
     marker: str | None = None
     zero: Literal["shared", "separate"] = "shared"
+    subtracted: bool = False
 
     def get(self, meaning: str) -> Column | None:
         """The column of that meaning."""

@@ -49,6 +49,7 @@ NEEDED = {
         ("nominal x", "nominal y", "nominal z"),
         ("loaded x", "loaded y", "loaded z"),
         *((axis,) for axis in (*AXES, GAUGE)),
+        *((f"loaded {word}", f"unloaded {word}") for word in (*POSITION, GAUGE)),
     ),
     "joints": (("joint 1",), ("joint 0",)),
     "loads": tuple(

@@ -16,7 +16,8 @@ from sk120stiff.measurements.importers.layout import (
     layout_of,
     sheet_of,
 )
-from sk120stiff.measurements.importers.words import kind_of
+from sk120stiff.measurements.importers.unread_axes import gauge_pair
+from sk120stiff.measurements.importers.words import kind_of, unit_of_header
 
 _BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
 _HOLDS = (  # what a table is of, by the meanings of its columns
@@ -115,6 +116,9 @@ def _no_positions(source: Source, joints: Layout) -> InputError:
     """Joints, and other columns or none that may hold positions, displacements or distances."""
     pairs = zip(joints.headers, joints.meanings, strict=True)
     left = [h for h, m in pairs if h and (m is None or kind_of(m[0]) == "length")]
+    pair = gauge_pair([unit_of_header(h)[0] if h else "" for h in joints.headers])
+    if pair:
+        return _no_direction(source, joints, pair)
     if not left:
         return InputError(
             "this file holds joint values, and no positions",
@@ -131,6 +135,22 @@ def _no_positions(source: Source, joints: Layout) -> InputError:
         "dash for what is not needed. Distances to fixed points need no import: docs/FILES.md "
         "shows their file (l[mm],ax[m],ay[m],az[m]). If positions are in another file, give that "
         "as FILE, and this one as --joints-file.",
+    )
+
+
+def _no_direction(source: Source, joints: Layout, pair: dict[str, int]) -> InputError:
+    """A gauge was read without and with load, and nothing says along what."""
+    told = list(joints.headers)
+    for state, k in pair.items():
+        unit = joints.units[k]
+        told[k] = f"z {state}" + (f" [{unit_of_header(told[k])[1] or unit}]" if unit else "")
+    return InputError(
+        f"{listed([joints.headers[k] for k in pair.values()])} are what a gauge read without and "
+        "with load, and nothing says along which axis",
+        where=str(source.path),
+        remedy="Name the axis of the base along which its reading rises: --columns "
+        f"'{','.join(name or '-' for name in told)}' (x or y for another); if it falls along it, "
+        "or reads along another direction, add the columns ux, uy, uz of where it rises.",
     )
 
 
