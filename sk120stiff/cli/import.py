@@ -78,7 +78,7 @@ def command(
     register: Annotated[bool | None, typer.Option("--register/--no-register")] = None,
     format_name: Annotated[str | None, typer.Option("--format")] = None,
     marker: str | None = None,
-    sheet: str | None = None,
+    sheet: list[str] | None = None,
     topic: str | None = None,
     base: BaseOption = None,
     tool: ToolOption = None,
@@ -126,7 +126,8 @@ def command(
             [default: told by the content]
         marker (NAME): One marker alone, where there are several (of a column marker, or 2 of x1,
             x2). [default: all, as positions]
-        sheet (NAME): Which sheet of a workbook.
+        sheet (NAME): Which sheet of a workbook; for files beside FILE, which may be the same
+            workbook, with what it is for: 'before=NAME', 'joints=NAME', 'loads=NAME'.
         topic (NAME): Which topic of a recording has positions.
     """
     if out is None and not preview:

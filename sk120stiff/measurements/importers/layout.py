@@ -176,9 +176,19 @@ def _laid_out(
         kind = kind_of(each[0]) if each else None
         if kind in said and units[k] is None:
             units[k], places[k] = said[kind], ABOVE
+    for k, stated_there in enumerate(_of_title(grid.sheet, meanings)):
+        if stated_there and units[k] is None:
+            units[k], places[k] = stated_there, f"the name of the sheet {grid.sheet}"
     return Layout(
         headers, meanings, tuple(units), tuple(places), first, tuple(above), (*strange, *told)
     )
+
+
+def _of_title(title: str | None, meanings: Sequence[tuple[str, float] | None]) -> list[str | None]:
+    """The unit in brackets behind a sheet's name, for each column of which it may be the unit."""
+    unit = unit_of_header(title)[1] if title and title.endswith((")", "]")) else None
+    kinds = [kind_of(known[0]) if known else None for known in meanings]
+    return [unit if unit and kind and units.is_kind(unit, kind) else None for kind in kinds]
 
 
 def _understood(

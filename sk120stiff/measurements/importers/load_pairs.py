@@ -153,8 +153,8 @@ def _read_anew(sheet: Sheet, before: Sequence[tuple[str, ...]]) -> bool:
     """Do readings without load differ from row to row of a pose? Of one axis, two rows of other
     poses may well have the same."""
     at = [c.cells for c in sheet.columns if c.meaning == "pose" or c.meaning.startswith("joint ")]
-    poses: dict[tuple[object, ...], list[tuple[str, ...]]] = {}
-    labels = zip(*(at or [sheet.lines]), strict=True)
+    poses: dict[tuple[str, ...], list[tuple[str, ...]]] = {}
+    labels = zip(*(at or [tuple(map(str, sheet.lines))]), strict=True)
     for pose, zero in zip(labels, zip(*before, strict=True), strict=True):
         poses.setdefault(pose, []).append(zero)
     again = [len(set(zeros)) > 1 for zeros in poses.values() if len(zeros) > 1]
