@@ -174,9 +174,11 @@ def _chosen(
     rivals: list[Group], topic: str | None, headers: Sequence[str]
 ) -> tuple[Group | None, str]:
     """The one group that is taken, and what is to be said of it; None where it cannot be told."""
-    if topic is not None:
-        told = [g for g in rivals if topic.strip("/") in (g.of, g.of.removesuffix("/pose"))]
-        rivals = told or rivals
+    if topic is not None and rivals[0].family in _AXES:
+        name = topic.strip("/")
+        rivals = [g for g in rivals if g.of == name or g.of.startswith(f"{name}/")]
+        if not rivals:
+            return None, ""
     if rivals[0].family == "time":  # clocks of several topics
         return rivals[0], ""
     by_word = [g for g in rivals if g.said == MEASURED]

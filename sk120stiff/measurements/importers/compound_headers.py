@@ -14,7 +14,12 @@ from functools import lru_cache
 from sk120stiff import units
 from sk120stiff.measurements.importers.clock import PARTS_OF_SECONDS
 from sk120stiff.measurements.importers.masses import MASSES
-from sk120stiff.measurements.importers.words import kind_of, meaning_of, unit_of_header
+from sk120stiff.measurements.importers.words import (
+    UNITS_IN_WORDS,
+    kind_of,
+    meaning_of,
+    unit_of_header,
+)
 
 MEASURED, COMMANDED = "measured", "commanded"
 
@@ -59,6 +64,7 @@ _HUNG = re.compile(  # words of a mass on the tool, without a unit
     r"mass (?:payload|load)"
 )
 _MASS = re.compile(r"mass|masse|massa|masa|weight|gewicht|last|tool mass|(?:load|m) ?\d?")
+_NUMBERED = re.compile(r"(?:position|pos)s? (\d+)")
 _SUBSCRIPT = re.compile(r"([xyz])(?P<said>[macntd])")  # Xm: measured; Xn, Xc, Xt, Xd: told to be
 _SAID_BY = {"m": MEASURED, "a": MEASURED}
 
@@ -159,7 +165,8 @@ def _of_topic(path: list[str], unit: str | None, actuated: tuple[str, ...]) -> C
         if last is None:
             return None
         above = [*path[:-1], *([last.of] if last.of else [])]
-        return replace(_behind(above, last.meaning, last.unit), said=last.said)
+        found = _behind(above, last.meaning, last.unit)
+        return replace(found, said=last.said or found.said, counted=last.counted)
     what, behind = words[0], words[1] if len(words) == 2 else ""
     if what in ("stamp", "timestamp") and behind in ("", "sec", "secs"):
         return _behind(path[:k], "time", unit)
@@ -174,15 +181,20 @@ def _of_topic(path: list[str], unit: str | None, actuated: tuple[str, ...]) -> C
 def _behind(path: list[str], meaning: str, unit: str | None) -> Compound:
     """A reading behind such parts of a topic."""
     words = {word.lower() for part in path for word in _words(part)}
-    return Compound(meaning, unit, "", "/".join(path), bool(words & INSTRUMENTS))
+    said = {_QUALIFIERS[part.lower()] for part in path if part.lower() in _QUALIFIERS}
+    if not meaning.startswith("joint ") and "target" in words:  # the object that was tracked
+        said = set()
+    stated = said.pop() if len(said) == 1 else ""
+    return Compound(meaning, unit, stated, "/".join(path), bool(words & INSTRUMENTS))
 
 
 def _of_words(
     words: list[str], name: str, unit: str | None, actuated: tuple[str, ...]
 ) -> Compound | None:
     """A reading in one word or several with strokes between: ``ft_fx_N``, ``q1_meas_rad``."""
-    if unit is None and len(words) > 1 and words[-1] in _TAILS:
-        whole = _of_words(words[:-1], re.sub(r"[\s_]+\w+$", "", name), words[-1], actuated)
+    tail = words[-1] if words[-1] in _TAILS else UNITS_IN_WORDS.get(words[-1].lower())
+    if unit is None and len(words) > 1 and tail is not None:
+        whole = _of_words(words[:-1], re.sub(r"[\s_]+\w+$", "", name), tail, actuated)
         if whole is not None:
             return whole
     low = [word.lower() for word in words]
@@ -208,6 +220,12 @@ def _of_words(
     before = [low[k] for k in kept[:first]]
     rest = " ".join(low[k] for k in kept[first:])
     meant = meaning_of(rest)
+    number = _NUMBERED.fullmatch(rest)
+    if number:
+        of = "_".join(before)
+        return Compound(f"joint {int(number[1])}", unit, stated, of, instrument=False, counted=True)
+    if rest == "t" and unit in PARTS_OF_SECONDS:
+        return Compound("time", unit, stated, "_".join(before), instrument=False)
     sub = _SUBSCRIPT.fullmatch(rest)
     if sub and meant is None:
         meant, stated = (sub[1], 1.0), _SAID_BY.get(sub["said"], COMMANDED)

@@ -212,6 +212,8 @@ def file_units(texts: list[str]) -> dict[str, str]:
 def kind_of(meaning: str) -> str | None:
     """Kind of the unit that a meaning has; None where it has none that could be told."""
     word = meaning.rpartition(" ")[2]
+    if meaning.startswith("orientation r") and word[1:].isdigit():  # r11: a number of a matrix
+        return None
     if meaning.startswith(("joint ", "orientation ", "turn ")):
         return "angle"
     if word in ("fx", "fy", "fz", "payload"):

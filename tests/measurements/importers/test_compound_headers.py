@@ -52,6 +52,12 @@ def axes(form: str) -> tuple[str, ...]:
         ("time_ms", "time", "ms"),
         ("field.header.stamp", "time", None),
         ("T_amb[°C]", "temperature", "°C"),
+        ("/arm_controller/state/actual/positions[2]", "joint 2", None),
+        ("position_3", "joint 3", None),
+        ("Achse2_ist_Grad", "joint 2", "deg"),
+        ("vicon_x_meters", "x", "m"),
+        ("t_s", "time", "s"),
+        ("Temperature_K", "temperature", "K"),
         ("room_temp_degC", "temperature", "degC"),
     ],
 )
@@ -93,6 +99,14 @@ def test_commanded_joints_alone_are_taken_and_that_is_said(tmp_path: Path) -> No
     found = draft_of(tmp_path, text, angle="rad", length="mm")
     assert found.joints.taken[0].header == "target_q_0"
     assert any("Joint values are commanded ones" in said for said in found.said)
+
+
+def test_a_part_of_a_topic_may_say_measured(tmp_path: Path) -> None:
+    form = "/arm/state/{}/positions[{{}}]"
+    parts = [joints(form.format(word), 0) for word in ("desired", "actual", "error")]
+    text = table(*parts[0], *parts[1], *parts[2], *axes("/mocap/target/pose/position/{}"))
+    found = draft_of(tmp_path, text, angle="rad", length="m")
+    assert tuple(c.header for c in found.joints.taken) == parts[1]
 
 
 def test_joints_that_the_user_names_may_be_the_commanded_ones(tmp_path: Path) -> None:
@@ -137,6 +151,8 @@ def test_of_two_topics_with_positions_one_is_asked_for_and_can_be_told(tmp_path:
     sheet = sheet_of(tmp_path, text, topic="/vicon/tool")
     column = sheet.get("x")
     assert column is not None and column.header == "/vicon/tool/pose/position/x"
+    with pytest.raises(InputError, match="may be the positions"):
+        sheet_of(tmp_path, text, topic="/vicon/other")
 
 
 def test_an_instrument_is_preferred_to_the_robots_own_pose(tmp_path: Path) -> None:
