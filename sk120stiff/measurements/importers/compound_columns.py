@@ -47,8 +47,6 @@ class Group:
     def whole(self, joints: int) -> bool:
         """Does it hold all that belongs together, of a robot with so many joints?"""
         there = self.meanings()
-        if len(there) < len(self.columns):  # a meaning twice: of which column?
-            return False
         if self.family == "joint":
             numbers = {int(word[6:]) for word in there}
             every = any(set(range(k, k + joints)) <= numbers for k in (0, 1))
@@ -74,14 +72,17 @@ def groups_of(
         joints: How many joint columns make a group; as many as are actuated by default.
     """
     plain = {header.lower() for header in headers}
-    groups: dict[tuple[str, str, str], Group] = {}
+    groups: dict[tuple[str, str, str, int], Group] = {}
+    again: dict[tuple[str, str, str], list[str]] = {}  # meanings, of those that come twice both
     for k, header in enumerate(headers):
         known = compound(header, actuated) if header else None
         if known is None:
             continue
         known = _as_subscript(header, known, plain)
         key = known.family, known.said, known.of
-        groups.setdefault(key, Group(*key)).columns[k] = known
+        seen = again.setdefault(key, [])
+        groups.setdefault((*key, seen.count(known.meaning)), Group(*key)).columns[k] = known
+        seen.append(known.meaning)
     count = len(actuated) if joints is None else joints
     return [group for group in groups.values() if group.whole(count)]
 
@@ -109,10 +110,12 @@ def with_compounds(
     groups = [g for g in groups_of(unknown, actuated) if g.family not in families]
     _with_plain_places(out, groups, families, unknown, actuated)
     taken: dict[str, Group] = {}
-    for family in dict.fromkeys(group.family for group in groups):
+    for family in sorted({group.family for group in groups}):  # a place before its turn
         rivals = [group for group in groups if group.family == family]
-        if family == "turn" and "place" in taken:
-            rivals = [g for g in rivals if g.of == taken["place"].of] or rivals
+        if family == "turn":
+            rivals = [g for g in rivals if _belongs(g, taken.get("place"))]
+        if not rivals:
+            continue
         group, why = _chosen(rivals, topic, headers)
         if group is None:
             continue
@@ -133,6 +136,13 @@ def with_compounds(
     if len(hung) == 1 and not _families(out) & {"load"} and units[hung[0]] is None:
         out[hung[0]] = "payload", 1.0
     return out, units_of, notes
+
+
+def _belongs(turn: Group, place: Group | None) -> bool:
+    """Were these axes read with that position, and are not the robot's own?"""
+    if place is not None:
+        return turn.of == place.of
+    return not turn.of or any(each.instrument for each in turn.columns.values())
 
 
 def _families(meanings: Sequence[tuple[str, float] | None]) -> set[str]:

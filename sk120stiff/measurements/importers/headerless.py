@@ -1,4 +1,4 @@
-"""Rows of numbers without headers: how many stand in a row, and where they begin."""
+"""Rows of numbers: how many stand in a row without headers, where they begin, and if none does."""
 
 from __future__ import annotations
 
@@ -54,3 +54,25 @@ def cut(row: tuple[str, ...], width: int = 0) -> tuple[str, ...]:
     while len(row) > width and not row[-1]:
         row = row[:-1]
     return row
+
+
+def no_rows(source: Source, needed: list[str], total: int) -> InputError:
+    """What is wrong with a table that has no reading below its headers, though `total` rows.
+
+    Recordings that were exported as they came have the columns of one topic in each row.
+    """
+    topics = len({header.rpartition("/")[0] for header in needed if "/" in header}) > 1
+    if total and topics:
+        return InputError(
+            f"in none of {total} rows stand the values of all topics together: each has those of "
+            "one, and the cells of the others are blank",
+            where=str(source.path),
+            remedy="Export with the last value of every topic in each row (in pandas: "
+            "pd.read_csv(...).ffill().dropna()), or the arm's joints and the positions at the same "
+            "times.",
+        )
+    return InputError(
+        "the table has headers but no row of readings",
+        where=str(source.path),
+        remedy="Export the readings once more.",
+    )

@@ -13,7 +13,7 @@ from sk120stiff.measurements.importers.compound_columns import with_compounds
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
 from sk120stiff.measurements.importers.gauge_units import counted_unit, multiplied
 from sk120stiff.measurements.importers.grid import is_number
-from sk120stiff.measurements.importers.headerless import cut, numeric
+from sk120stiff.measurements.importers.headerless import cut, no_rows, numeric
 from sk120stiff.measurements.importers.joint_names import with_joint_names
 from sk120stiff.measurements.importers.load_states import with_states
 from sk120stiff.measurements.importers.masses import with_masses
@@ -283,11 +283,7 @@ def sheet_of(
         lines.append(grid.lines[k])
         rank.append(total - 1)
     if not rows:
-        raise InputError(
-            "the table has headers but no row of readings",
-            where=str(source.path),
-            remedy="Export the readings once more.",
-        )
+        raise no_rows(source, [layout.headers[k] for k in needed], total)
     columns, spare, twice = _columns(
         layout, list(zip(*rows, strict=True)), dict(assumed_units or {})
     )

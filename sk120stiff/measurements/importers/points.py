@@ -101,6 +101,12 @@ def _places(source: Source) -> list[str]:
 
 def _several_places(source: Source, places: list[str]) -> InputError:
     topics = "/" in places[0]
+    if source.topic is not None:
+        return InputError(
+            f"no positions stand in columns of the topic {source.topic!r}",
+            where=str(source.path),
+            remedy=f"There are {listed(places)}.",
+        )
     return InputError(
         f"{listed(places, 'or')} may be the positions that were measured"
         if len(places) > 1

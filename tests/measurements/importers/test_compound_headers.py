@@ -151,7 +151,7 @@ def test_of_two_topics_with_positions_one_is_asked_for_and_can_be_told(tmp_path:
     sheet = sheet_of(tmp_path, text, topic="/vicon/tool")
     column = sheet.get("x")
     assert column is not None and column.header == "/vicon/tool/pose/position/x"
-    with pytest.raises(InputError, match="may be the positions"):
+    with pytest.raises(InputError, match="no positions stand in columns of the topic"):
         sheet_of(tmp_path, text, topic="/vicon/other")
 
 
@@ -227,3 +227,23 @@ def test_a_number_behind_position_may_be_an_axis(tmp_path: Path) -> None:
     text = table(*(f"/node/position[{k}]" for k in range(3)), "x", "y", "z")
     with pytest.raises(InputError, match="no joint values"):
         draft_of(tmp_path, text, ("a", "b", "c"), length="mm", angle="rad")
+
+
+def test_values_in_two_units_are_asked_for(tmp_path: Path) -> None:
+    text = table(*joints("q{}_meas_rad"), *joints("q{}_meas_deg"), *axes("lt_{}_mm"))
+    with pytest.raises(InputError, match=r"q6_meas_rad or q1_meas_deg"):
+        draft_of(tmp_path, text)
+
+
+def test_axes_of_the_robot_do_not_go_with_a_position_of_an_instrument(tmp_path: Path) -> None:
+    turns = [f"/ee/pose/orientation/{axis}" for axis in "wxyz"]
+    sheet = sheet_of(tmp_path, table(*joints("q{}[deg]"), *axes("lt_{}_mm"), *turns))
+    assert sheet.has("x") and not sheet.has("qw")
+
+
+def test_rows_of_one_topic_each_are_told(tmp_path: Path) -> None:
+    head = [*joints("/joint_states/position[{}]", 0), *axes("/vicon/tool/point/{}")]
+    text = "\n".join([",".join(head), "1,2,3,4,5,6,,,", ",,,,,,1,2,3"])
+    with pytest.raises(InputError, match=r"in none of 2 rows .* all topics") as caught:
+        draft_of(tmp_path, text)
+    assert "ffill" in str(caught.value)
