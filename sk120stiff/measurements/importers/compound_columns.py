@@ -21,6 +21,9 @@ from sk120stiff.measurements.importers.compound_headers import (
 
 Meanings = list[tuple[str, float] | None]
 _AXES = {"place": ("x", "y", "z"), "turn": ("qw", "qx", "qy", "qz")}
+# Meanings beside which no other place is sought; where the marker sits is not told from the
+# robot's own pose, which is asked for.
+_PLACES = ("x", "y", "z", "loaded x", "unloaded x", "dx", "dy", "dz", "gauge", "tcp x")
 _STATES = ("", "unloaded ", "loaded ")
 COMMANDED_JOINT = f"{COMMANDED} joint"  # begins the meaning of joints that stand beside measured
 
@@ -107,7 +110,10 @@ def with_compounds(
     out, units_of, notes = list(meanings), list(units), []
     unknown = [h if m is None else "" for h, m in zip(headers, meanings, strict=True)]
     families = _families(meanings)
-    groups = [g for g in groups_of(unknown, actuated) if g.family not in families]
+    groups = groups_of(unknown, actuated)
+    if "joint" in families:
+        notes += _beside_plain_joints(out, groups, headers)
+    groups = [g for g in groups if g.family not in families]
     _with_plain_places(out, groups, families, unknown, actuated)
     taken: dict[str, Group] = {}
     for family in sorted({group.family for group in groups}):  # a place before its turn
@@ -126,8 +132,7 @@ def with_compounds(
             out[k], units_of[k] = (prefix + each.meaning, 1.0), units_of[k] or each.unit
         for other in rivals:
             if other is not group and family == "joint" and other.said == COMMANDED:
-                for k, each in other.columns.items():
-                    out[k] = f"{COMMANDED_JOINT} {each.meaning[6:]}", 1.0
+                _set_commanded(out, other)
     for k, known in enumerate(out):  # Temp_C: understood but for the unit
         if known and known[0] == "temperature" and units_of[k] is None:
             more = compound(headers[k], actuated)
@@ -147,18 +152,34 @@ def _belongs(turn: Group, place: Group | None) -> bool:
 
 def _families(meanings: Sequence[tuple[str, float] | None]) -> set[str]:
     """Families that columns of known meaning belong to."""
-    out = set()
-    for known in meanings:
-        if known is None:
-            continue
-        word = known[0]
-        family = Compound(word.removeprefix("measured "), None, "", "", instrument=False).family
-        out.add("load" if family in ("payload", "load") else family)
-        if word.startswith("orientation"):
-            out.add("turn")
-        if word in ("dx", "dy", "dz", "gauge"):
-            out.add("place")
+    there = {known[0] for known in meanings if known}
+    plain = {word.removeprefix("measured ") for word in there}
+    out = {Compound(word, None, "", "", instrument=False).family for word in plain} - {"place"}
+    if plain & set(_PLACES) or {"nominal x", "deviation x"} <= there:
+        out.add("place")
+    if any(word.startswith("orientation") for word in there):
+        out.add("turn")
+    if out & {"payload", "load"}:
+        out.add("load")
     return out
+
+
+def _beside_plain_joints(out: Meanings, groups: list[Group], headers: Sequence[str]) -> list[str]:
+    """Commanded joints beside plain ones, which are then what was measured; said in sentences."""
+    beside = [g for g in groups if g.family == "joint" and g.said == COMMANDED]
+    for group in beside:
+        _set_commanded(out, group)
+    plain = [h for h, m in zip(headers, out, strict=True) if m and m[0].startswith("joint ")]
+    return [
+        f"{plain[0]} to {plain[-1]} are taken for measured joints; {_called(group, headers)}, as "
+        "commanded, are not."
+        for group in beside
+    ]
+
+
+def _set_commanded(out: Meanings, group: Group) -> None:
+    for k, each in group.columns.items():
+        out[k] = f"{COMMANDED_JOINT} {each.meaning[6:]}", 1.0
 
 
 def _with_plain_places(

@@ -46,6 +46,7 @@ _BEFORE = INSTRUMENTS | _set(
     "ft fts sensor netft ati wrench loadcell robot arm rtde controller encoder enc laser tcp ee "
     "flange tool marker smr joint joints state states pose"
 )
+_BEHIND = INSTRUMENTS | _set("ft fts sensor robot tcp ee flange")  # may stand last
 # Words of a rate, an effort or an uncertainty: a header that holds one is of no value named here.
 _OTHER = _set(
     "vel velocity velocities speed acc accel acceleration effort efforts current currents voltage "
@@ -210,8 +211,11 @@ def _of_words(
             return Compound(meant[0], unit, stated, "", instrument=False)
     if unit in _CELSIUS and _WARMTH.fullmatch(" ".join(low)):
         return Compound("temperature", unit, "", "", instrument=False)
+    if len(kept) > 1:  # x_leica, before_leica_x: as leica_x, leica_x_before
+        last = kept[-1]
+        kept = sorted(kept, key=lambda k: low[k] not in (_BEHIND if k == last else INSTRUMENTS))
     first = 0
-    while first < len(kept) - 1 and low[kept[first]] in _BEFORE:
+    while first < len(kept) - 1 and _stands_before(low[kept[first]], first):
         first += 1
         rest = " ".join(low[k] for k in kept[first:])
         meant = meaning_of(rest)
@@ -234,6 +238,11 @@ def _of_words(
     instrument = bool(set(before) & INSTRUMENTS)
     meaning = meant[0].removeprefix("measured ")
     return Compound(meaning, unit, stated, "_".join(before), instrument)
+
+
+def _stands_before(word: str, place: int) -> bool:
+    """Is it no part of the reading: an instrument, a carrier, or the number or type of one?"""
+    return word in _BEFORE or (place > 0 and any(map(str.isdigit, word)))
 
 
 def _fits(found: Compound) -> bool:

@@ -113,8 +113,8 @@ def _several_places(source: Source, places: list[str]) -> InputError:
         else f"{places[0]} are commanded or nominal, and no measured position stands beside them",
         where=str(source.path),
         remedy=("Say which: --topic with what stands before position/x. " if topics else "")
-        + "Name all columns with --columns (x,y,z for those that were measured, a dash for one "
-        "that is not needed), or take the others out.",
+        + "Name all columns with --columns (x,y,z for those that were measured, of several markers "
+        "x1,y1,z1,x2,y2,z2, a dash for one that is not needed), or take the others out.",
     )
 
 

@@ -44,6 +44,9 @@ def axes(form: str) -> tuple[str, ...]:
         ("leica_y_mm", "y", "mm"),
         ("lt_z_m", "z", "m"),
         ("lt_x_before_mm", "unloaded x", "mm"),
+        ("after_lt_x_mm", "loaded x", "mm"),
+        ("y_leica", "y", None),
+        ("leica_at960_x_mm", "x", "mm"),
         ("/ft/wrench/force/x", "fx", None),
         ("/ft/wrench/torque/y", "my", None),
         ("ati_fz_N", "fz", "N"),
@@ -92,6 +95,18 @@ def test_measured_joints_are_preferred_to_commanded_ones_and_that_is_said(tmp_pa
     assert any("q1_cmd_rad: commanded" in left for left in found.unused)
     column = found.sheet.get("x")
     assert column is not None and column.stated == "the header, line 1"
+
+
+def test_plain_joints_beside_commanded_ones_are_the_measured(tmp_path: Path) -> None:
+    found = draft_of(tmp_path, table(*joints("q{}_cmd_deg"), *joints("q{}_deg"), *axes("{}_mm")))
+    assert found.joints.taken[0].header == "q1_deg"
+    assert any("q1_deg to q6_deg are taken for measured joints" in said for said in found.said)
+
+
+def test_an_instrument_beside_nominal_places_and_angles(tmp_path: Path) -> None:
+    head = (*joints("q{}_deg"), *axes("target_{}"), "rx", "ry", "rz", *axes("lt_{}_mm"))
+    column = sheet_of(tmp_path, table(*head)).get("x")
+    assert column is not None and column.header == "lt_x_mm"
 
 
 def test_commanded_joints_alone_are_taken_and_that_is_said(tmp_path: Path) -> None:
