@@ -80,24 +80,24 @@ def command(
     register: Annotated[bool | None, typer.Option("--register/--no-register")] = None,
     format_name: Annotated[str | None, typer.Option("--format")] = None,
     marker: str | None = None,
-    sheet: str | None = None,
+    sheet: list[str] | None = None,
     topic: str | None = None,
     base: BaseOption = None,
     tool: ToolOption = None,
 ) -> Answer:
     """Readings of trackers and calibration programs as measurements.
 
-    Knows SpatialAnalyzer, Leica, PolyWorks, RoboDK, DELMIA, FIGAROH, plain lists, Excel, MATLAB and
-    ROS 2 bags by their content, and shows what it understood: columns, units, axes, what is left
-    out, how well the positions fit the robot, and what can be identified.
+    Knows SpatialAnalyzer, Leica, PolyWorks, RoboDK, DELMIA, FIGAROH, plain lists, Excel, MATLAB,
+    numpy and ROS 2 bags by their content, and shows what it understood: columns, units, axes, what
+    is left out, how well the positions fit the robot, and what can be identified.
 
     Example: sk120stiff import points.txt --joints-file joints.csv --robot ur5.urdf --length mm
     --angle deg --out own.csv
 
     Args:
         sources (FILE): Positions of a marker, with or without joints: text of any separator, .xlsx,
-            .mat, or the folder of a ROS bag. What it is, its content tells. Several files of the
-            same columns are one campaign; the tracker may have moved in between.
+            .mat, .npz, or the folder of a ROS bag. What it is, its content tells. Several files of
+            the same columns are one campaign; the tracker may have moved in between.
         robot (ROBOT): A .urdf, a .xacro, a DH table (.csv), a folder with robot.yaml, or a bundled
             name (motoman_sk120).
         out (FILE): The CSV file to write; a YAML file goes beside it.
@@ -131,8 +131,10 @@ def command(
             [default: told by the content]
         marker (NAME): One marker alone, where there are several (of a column marker, or 2 of x1,
             x2). [default: all, as positions]
-        sheet (NAME): Which sheet of a workbook.
-        topic (NAME): Which topic of a recording has positions.
+        sheet (NAME): Which sheet of a workbook; for files beside FILE, which may be the same
+            workbook, with what it is for: 'before=NAME', 'joints=NAME', 'loads=NAME'.
+        topic (NAME): Which topic of a recording, or of headers like /vicon/tool/pose/position/x,
+            has positions.
     """
     if out is None and not preview:
         raise InputError(

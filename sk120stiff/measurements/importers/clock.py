@@ -22,6 +22,9 @@ DAY = dt.timedelta(days=1)
 
 _UNIX = (Decimal(10) ** 9, Decimal(42) * 10**8)  # seconds since 1970 in 2001 and in 2103
 _COUNTED = {0: "seconds", 3: "milliseconds", 6: "microseconds", 9: "nanoseconds"}  # 10^-k s
+PARTS_OF_SECONDS = {  # powers of ten of a second
+    "s": 0, "sec": 0, "secs": 0, "ms": -3, "us": -6, "µs": -6, "ns": -9,
+}  # fmt: skip
 EXAMPLES = "2026-11-22 10:15:00, 22.11.2026 10:15:00, 10:15:00"
 EITHER_WAY = "day and month can be read either way; write dates as 2026-11-22"
 _OTHER_ORDER = {"dmy": re.compile("%m[/-]%d"), "mdy": re.compile("%d[/-]%m")}
@@ -119,3 +122,19 @@ def _past_midnight(times: Sequence[dt.datetime]) -> list[dt.datetime]:
             time += DAY
         out.append(time)
     return out
+
+
+def in_seconds(cells: Sequence[str], unit: str | None) -> tuple[tuple[str, ...], str | None]:
+    """Cells of a clock and their unit, milliseconds and the like as seconds, digit by digit.
+
+    Counts since 1970 stay what they are, without a unit: `since_1970` knows them.
+    """
+    power = PARTS_OF_SECONDS.get(unit or "")
+    if power is None:
+        return tuple(cells), unit
+    if since_1970(cells) is not None:
+        return tuple(cells), None
+    try:
+        return tuple(f"{Decimal(cell).scaleb(power):f}" if cell else "" for cell in cells), "s"
+    except InvalidOperation:
+        return tuple(cells), unit

@@ -36,6 +36,9 @@ class Source:
         columns: Names for its columns, where somebody told them.
         sheet, topic, marker: Which sheet of a workbook, topic of a recording, marker of several.
         given: Its rows, where they were made of something else.
+        called: Which file of several it is, as --sheet names it: before, joints, loads or none.
+        beside: A sheet of the same workbook that is used for another of them.
+        state: ``unloaded`` or ``loaded``: of several sheets the one whose name says so.
     """
 
     path: Path
@@ -46,6 +49,9 @@ class Source:
     topic: str | None = None
     marker: str | None = None
     given: Grid | None = None
+    called: str = ""
+    beside: str | None = None
+    state: str | None = None
 
     @cached_property
     def data(self) -> bytes:
@@ -118,7 +124,9 @@ class Sheet:
         frame: The axes that the file says positions are in.
         notes: What was decided or taken for granted, in sentences.
         marker: The one of several markers that these are readings of, where one was chosen.
-        zero: Of positions with and without load: do rows of a pose share a zero reading?
+        zero: Of readings with and without load: do rows of a pose share a zero reading?
+        doubts: What speaks against it, in sentences.
+        subtracted: Are displacements such readings, one less the other?
         remarks: Comments and lines above the table, with their numbers.
     """
 
@@ -136,6 +144,8 @@ class Sheet:
     notes: tuple[str, ...] = ()
     marker: str | None = None
     zero: Literal["shared", "separate"] = "shared"
+    subtracted: bool = False
+    doubts: tuple[str, ...] = ()
     remarks: tuple[tuple[int, str], ...] = ()
 
     def get(self, meaning: str) -> Column | None:

@@ -13,9 +13,11 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.absolute import SAME_POSE
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.clock import EITHER_WAY, since_1970, since_first
+from sk120stiff.measurements.importers.compound_columns import COMMANDED_JOINT
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
 from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
+from sk120stiff.measurements.importers.matrix_columns import MATRIX_END
 from sk120stiff.measurements.importers.orientation_columns import orientation_columns
 from sk120stiff.measurements.importers.told import (
     Told,
@@ -135,7 +137,8 @@ def drafted(
     taken += [c for c in sheet.columns if c.meaning in ("use", "pose")]
     taken += orientation_columns(sheet)  # what is made of them is for the placed robot to tell
     left = [c for c in (*sheet.columns, *sheet.spare) if not any(c is t for t in taken)]
-    refuse_other_joints(sheet, left, actuated)
+    asked = [c for c in left if not c.meaning.startswith(COMMANDED_JOINT)]
+    refuse_other_joints(sheet, asked, actuated)
     unused = [f"column {c.header}{reasons.get(id(c), _why_unused(c))}" for c in left]
     return Draft(
         sheet=sheet,
@@ -164,6 +167,10 @@ def _why_unused(column: Column) -> str:
         return ": of the whole point, and how much of it is along x, y and z is not stated"
     if column.meaning.startswith(("nominal", "deviation")):
         return ": the measured position stands beside it"
+    if column.meaning.startswith(COMMANDED_JOINT):
+        return ": commanded, and the measured value stands beside it"
+    if column.meaning.startswith(MATRIX_END):
+        return ": 0 0 0 1 of the matrix"
     return ""
 
 

@@ -33,6 +33,7 @@ class Grid:
         how: Encoding, separator and the like, in words.
         part: Sheet of a workbook, as it stands before a line number.
         left: What else the file holds, in words.
+        sheet: Name of the sheet of a workbook.
     """
 
     path: Path
@@ -42,6 +43,7 @@ class Grid:
     how: str = ""
     part: str = ""
     left: tuple[str, ...] = ()
+    sheet: str | None = None
 
     def place(self, row: int) -> str:
         """File and line for a message."""
@@ -119,7 +121,7 @@ def _no_text(path: Path) -> InputError:
     return InputError(
         "this is no text, and no format that is known",
         where=str(path),
-        remedy="Export the readings as text (CSV), .xlsx, .mat (version 7) or a ROS 2 bag.",
+        remedy="Export the readings as text (CSV), .xlsx, .mat (version 7), .npz or a ROS 2 bag.",
     )
 
 

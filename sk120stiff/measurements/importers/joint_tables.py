@@ -14,10 +14,9 @@ from dataclasses import dataclass
 
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
 from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.headerless import of_other_columns, shaped
 from sk120stiff.measurements.importers.layout import (
     layout_of,
-    of_other_columns,
-    shaped,
     sheet_by_order,
 )
 

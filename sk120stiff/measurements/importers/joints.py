@@ -9,7 +9,8 @@ from difflib import get_close_matches
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.told import Told, quantity, texts, unit_of
 from sk120stiff.measurements.importers.words import unit_of_header
@@ -76,13 +77,13 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
     """The numbered columns, from 1 or from 0 on."""
     numbered = _numbered(sheet)
     n = len(actuated)
-    listed = f"The actuated joints are {', '.join(actuated)}."
+    robot = f"The actuated joints are {', '.join(actuated)}."
     if not numbered:
         raise InputError(
-            "this file holds no joint values",
+            "this file holds no joint values" + _may_be(sheet, n),
             where=str(sheet.path),
             remedy="Give the file that does: --joints-file FILE; or name its columns with "
-            f"--joints. {listed}",
+            f"--joints. {robot}",
         )
     start = 0 if 0 in numbered else 1
     names = [unit_of_header(c.header)[0] for c in (*numbered.values(), *sheet.spare)]
@@ -94,17 +95,24 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
                 f"the joint {joint!r} has no column 'q{k}'{meant}",
                 where=str(sheet.path),
                 remedy="Name the columns as the joints, or q1, q2, ..., or give their names with "
-                f"--joints. {listed}",
+                f"--joints. {robot}",
             )
     over = [c.header for k, c in numbered.items() if k >= start + n]
     if over:
         raise InputError(
             f"{', '.join(over)}: joints by their names, which the robot does not have",
             where=str(sheet.path),
-            remedy=f"{listed} Give the robot that was measured, or name the columns of its joints "
+            remedy=f"{robot} Give the robot that was measured, or name the columns of its joints "
             "with --joints.",
         )
     return [numbered[k] for k in range(start, start + n)]
+
+
+def _may_be(sheet: Sheet, joints: int) -> str:
+    """Composed headers of joints of which none was chosen, in words; empty where none are."""
+    headers = [c.header for c in sheet.spare]
+    groups = [g for g in groups_of(headers, joints=joints) if g.family == "joint"]
+    return f"; these may each be: {listed(shown(groups, headers), 'or')}" if groups else ""
 
 
 def _as_told(sheet: Sheet, told: tuple[str, ...], actuated: tuple[str, ...]) -> list[Column]:

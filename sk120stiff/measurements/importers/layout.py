@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from sk120stiff import units
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.clock import in_seconds
+from sk120stiff.measurements.importers.compound_columns import with_compounds
 from sk120stiff.measurements.importers.contract import Column, Sheet, Source
 from sk120stiff.measurements.importers.gauge_units import counted_unit, multiplied
 from sk120stiff.measurements.importers.grid import is_number
+from sk120stiff.measurements.importers.headerless import cut, no_rows, numeric
+from sk120stiff.measurements.importers.joint_names import with_joint_names
 from sk120stiff.measurements.importers.load_states import with_states
 from sk120stiff.measurements.importers.masses import with_masses
+from sk120stiff.measurements.importers.matrix_columns import with_matrices
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
 from sk120stiff.measurements.importers.unread_axes import (
     AXES,
@@ -45,6 +49,7 @@ NEEDED = {
         ("nominal x", "nominal y", "nominal z"),
         ("loaded x", "loaded y", "loaded z"),
         *((axis,) for axis in (*AXES, GAUGE)),
+        *((f"loaded {word}", f"unloaded {word}") for word in (*POSITION, GAUGE)),
     ),
     "joints": (("joint 1",), ("joint 0",)),
     "loads": tuple(
@@ -95,20 +100,21 @@ def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
     """
     grid = source.grid
     if source.columns is not None:
-        first = next((k for k, row in enumerate(grid.rows) if _numeric(row)), len(grid.rows))
+        first = next((k for k, row in enumerate(grid.rows) if numeric(row)), len(grid.rows))
         if 0 < first < len(grid.rows) and _is_units(grid.rows[first - 1]):
             first -= 1  # names were told, units stand in the file
         return _laid_out(source, tuple(source.columns), first, first, "as told", meaning)
     for k in range(min(SEARCHED, len(grid.rows))):
         row = _with_what_stands_above(grid.rows, k)
-        if _names_enough(row, source, meaning):
+        if _names_enough(row, source, meaning, grid.rows[k + 1 :]):
             return _laid_out(source, row, k, k + 1, f"line {grid.lines[k]}", meaning)
-    start = next((k for k, row in enumerate(grid.rows) if _numeric(row)), None)
+    start = next((k for k, row in enumerate(grid.rows) if numeric(row)), None)
     for number, text in reversed(grid.comments):
         if start is None or number > grid.lines[start]:
             continue
         headers = tuple(c for c in re.split(r"\s*[,;\t]\s*|\s+", text) if c)
-        if len(headers) == len(grid.rows[start]) and _names_enough(headers, source, meaning):
+        long = len(headers) == len(grid.rows[start])
+        if long and _names_enough(headers, source, meaning, grid.rows[start:]):
             return _laid_out(source, headers, start, start, f"line {number}", meaning)
     return None
 
@@ -128,14 +134,10 @@ def _with_what_stands_above(rows: tuple[tuple[str, ...], ...], k: int) -> tuple[
     )
 
 
-def _numeric(row: tuple[str, ...]) -> bool:
-    """Is this a row of readings: more numbers than words, a name before them apart?"""
-    return sum(map(is_number, row)) * 2 >= sum(cell != "" for cell in row) > 0
-
-
-def _names_enough(row: tuple[str, ...], source: Source, meaning: Meaning) -> bool:
-    named = [unit_of_header(cell) for cell in row if not is_number(cell)]
-    known, _ = _understood(source, [n for n, _ in named], [unit for _, unit in named], meaning)
+def _names_enough(
+    row: tuple[str, ...], source: Source, meaning: Meaning, below: tuple[tuple[str, ...], ...]
+) -> bool:
+    known, _, _ = _understood(source, ["" if is_number(c) else c for c in row], meaning, below)
     found = {each[0] for each in known if each}
     return any(set(group) <= found for group in NEEDED[source.role])
 
@@ -144,7 +146,7 @@ def _laid_out(
     source: Source, headers: tuple[str, ...], at: int, first: int, stated: str, meaning: Meaning
 ) -> Layout:
     grid = source.grid
-    headers = _cut(headers)
+    headers = cut(headers)
     named = [unit_of_header(h) if h else ("", None) for h in headers]
     units = [unit for _, unit in named]
     places = [f"the header, {stated}" if unit else "" for unit in units]
@@ -166,27 +168,53 @@ def _laid_out(
     above = [
         (grid.lines[k], "  ".join(c for c in row if c)) for k, row in enumerate(grid.rows[:at])
     ]
-    known, units = _understood(source, [name for name, _ in named], units, meaning)
+    known, units, told = _understood(source, headers, meaning, grid.rows[first:], units)
+    places = [p or f"the header, {stated}" * bool(u) for p, u in zip(places, units, strict=True)]
     meanings = as_measured(with_quaternions([name for name, _ in named], known))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):
         kind = kind_of(each[0]) if each else None
         if kind in said and units[k] is None:
             units[k], places[k] = said[kind], ABOVE
+    for k, stated_there in enumerate(_of_title(grid.sheet, meanings)):
+        if stated_there and units[k] is None:
+            units[k], places[k] = stated_there, f"the name of the sheet {grid.sheet}"
     return Layout(
-        headers, meanings, tuple(units), tuple(places), first, tuple(above), tuple(strange)
+        headers, meanings, tuple(units), tuple(places), first, tuple(above), (*strange, *told)
     )
 
 
+def _of_title(title: str | None, meanings: Sequence[tuple[str, float] | None]) -> list[str | None]:
+    """The unit in brackets behind a sheet's name, for each column of which it may be the unit."""
+    unit = unit_of_header(title)[1] if title and title.endswith((")", "]")) else None
+    kinds = [kind_of(known[0]) if known else None for known in meanings]
+    return [unit if unit and kind and units.is_kind(unit, kind) else None for kind in kinds]
+
+
 def _understood(
-    source: Source, names: list[str], units_of: list[str | None], meaning: Meaning
-) -> tuple[list[tuple[str, float] | None], list[str | None]]:
-    """What columns mean, each by its name and by those beside it, and their units."""
+    source: Source,
+    headers: Sequence[str],
+    meaning: Meaning,
+    below: tuple[tuple[str, ...], ...],
+    stated: Sequence[str | None] | None = None,
+) -> tuple[list[tuple[str, float] | None], list[str | None], list[str]]:
+    """What columns mean, each by its name and by those beside it, their units, and what was chosen.
+
+    Units are those that are `stated` in headers or in a row of units, else those of the headers.
+    """
+    named = [unit_of_header(header) if header else ("", None) for header in headers]
+    names = [name for name, _ in named]
+    units_of = list(stated) if stated is not None else [unit for _, unit in named]
     known = [meaning(name, source.actuated) if name else None for name in names]
     known = with_gauges(names, with_states(names, known))
+    known, units_of, notes = with_compounds(headers, known, units_of, source.actuated, source.topic)
     known, units_of = with_masses(names, known, units_of)
     known = with_torques(known, units_of)
-    return with_vendor_joints(names, known, source.actuated), units_of
+    known = with_vendor_joints(names, known, source.actuated)
+    known, of_matrix = with_matrices(names, known, below)
+    where = str(source.path)
+    known, of_joints = with_joint_names(headers, known, below, source.actuated, where)
+    return known, units_of, [*notes, *of_matrix, *of_joints]
 
 
 def _unit_in(cell: str) -> str:
@@ -199,48 +227,6 @@ def _is_units(row: tuple[str, ...]) -> bool:
     cells = [c for cell in row if (c := _unit_in(cell)).lower() not in (*BLANK, *_UNIT_WORDS)]
     known = sum(map(is_unit, cells))
     return known > 0 and not any(map(is_number, cells)) and 2 * known >= len(cells)
-
-
-def shaped(source: Source) -> tuple[int, bool, int]:
-    """Of a grid without headers: numbers in a row, is there a name before them, the first row.
-
-    Raises:
-        InputError: No row holds numbers.
-    """
-    rows = source.grid.rows
-    first = next((k for k, row in enumerate(rows) if _numeric(row)), None)
-    if first is None:
-        raise InputError(
-            "no line of this file holds readings",
-            where=str(source.path),
-            remedy="Its columns have headers such as name, x [mm], y [mm], z [mm]; or name them "
-            "with --columns.",
-        )
-    width = Counter(len(_cut(row)) for row in rows[first:]).most_common(1)[0][0]
-    some = [row for row in rows[first:] if len(_cut(row)) == width]
-    named = not all(is_number(row[0]) for row in some)
-    return width - named, named, first
-
-
-def of_other_columns(source: Source) -> bool:
-    """Does a row of headers stand above the numbers that `layout_of` did not understand?
-
-    How many numbers stand in a row then tells nothing: they have names, and others. Three numbers
-    are positions whatever is written above them; of joints or loads they may be anything.
-    """
-    count, named, first = shaped(source)
-    above = _cut(source.grid.rows[first - 1]) if first else ()
-    few = source.role == "points" and count <= len(POSITION)
-    if len(above) != count + named or few:
-        return False
-    return not any(map(is_number, above)) and source.columns is None
-
-
-def _cut(row: tuple[str, ...], width: int = 0) -> tuple[str, ...]:
-    """The row without empty cells behind the last column."""
-    while len(row) > width and not row[-1]:
-        row = row[:-1]
-    return row
 
 
 def sheet_of(
@@ -272,7 +258,7 @@ def sheet_of(
     needed = [k for k, m in enumerate(layout.meanings) if m and is_needed(m[0])]
     axes = axes_among(layout.meanings)
     for k in range(layout.first, len(grid.rows)):
-        row = _cut(grid.rows[k], width)
+        row = cut(grid.rows[k], width)
         named = len(row) == width and row[0]  # a point that was not measured
         if not any(map(is_number, row)) and not named:
             skipped.append((grid.lines[k], f"no numbers: {'  '.join(row)[:60]}"))
@@ -297,11 +283,7 @@ def sheet_of(
         lines.append(grid.lines[k])
         rank.append(total - 1)
     if not rows:
-        raise InputError(
-            "the table has headers but no row of readings",
-            where=str(source.path),
-            remedy="Export the readings once more.",
-        )
+        raise no_rows(source, [layout.headers[k] for k in needed], total)
     columns, spare, twice = _columns(
         layout, list(zip(*rows, strict=True)), dict(assumed_units or {})
     )
@@ -393,6 +375,8 @@ def _in_one_unit(
 ) -> Column:
     """A column; what counts parts of a unit, as 1/100 mm, becomes numbers in a unit."""
     unit, stated = layout.units[k], layout.stated[k]
+    if meaning == "time":
+        cells, unit = in_seconds(cells, unit)
     counted = counted_unit(unit) if unit and not units.is_unit(unit) else None
     if counted is None:
         return Column(header, meaning, unit, stated, cells)

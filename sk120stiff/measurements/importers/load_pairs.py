@@ -4,22 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeVar
+from decimal import Decimal
+from typing import Literal, TypeVar
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
+from sk120stiff.measurements.importers.told import numbers
+from sk120stiff.measurements.importers.unread_axes import GAUGE
 
 T = TypeVar("T")
 
 POSITIONS = ("x", "y", "z")
 LOADS = ("fx", "fy", "fz", "mx", "my", "mz", "payload", "load")
+_OWN = {  # has every row a zero reading of its own?
+    True: "Every row has a zero reading of its own (displacement: {zero: separate}).",
+    False: "Rows of one pose share a zero reading (displacement: {zero: shared}).",
+}
+_ZERO: dict[bool, Literal["separate", "shared"]] = {True: "separate", False: "shared"}
 _OF_ONE = ("order", "time")  # of two readings, which one it was is not said
 
 
 def unfolded(sheet: Sheet) -> Sheet:
     """The sheet with a row without load before each row under load, N → 2 N.
 
+    Of one axis or two alone, and of a gauge's direction, rows become displacements instead.
     Where no two rows have the same reading without load, each has one of its own.
 
     A sheet without columns of both kinds comes back as it is.
@@ -28,8 +37,11 @@ def unfolded(sheet: Sheet) -> Sheet:
         InputError: Half of the pairs is missing, their units differ, or no column says the load.
     """
     names = [f"{kind} {axis}" for kind in (WITHOUT, WITH) for axis in POSITIONS]
-    if not any(sheet.get(name) for name in names):
+    if not any(sheet.get(name) for name in (*names, f"{WITH} {GAUGE}")):
         return sheet
+    some = _differences(sheet)
+    if some is not None:
+        return some
     missing = [name for name in names if not sheet.get(name)]
     if missing:
         raise InputError(
@@ -38,13 +50,7 @@ def unfolded(sheet: Sheet) -> Sheet:
             remedy="Name the columns with --columns: 'x_unloaded,y_unloaded,z_unloaded,x_loaded,"
             "y_loaded,z_loaded', or 'x,y,z' where one reading alone counts.",
         )
-    if not any(sheet.get(name) for name in LOADS):
-        raise InputError(
-            "positions stand there with and without load, and no column says the load",
-            where=str(sheet.path),
-            remedy="Add the columns fx[N], fy[N], fz[N] or payload[kg], or give --loads-file; with "
-            "--before one load in all rows is --wrench '0,0,-490 N'.",
-        )
+    _refuse_no_load(sheet)
     columns: list[Column] = []
     for column in sheet.columns:
         if column.meaning in (*names, *_OF_ONE):
@@ -55,12 +61,7 @@ def unfolded(sheet: Sheet) -> Sheet:
         free, pushed = (sheet.get(f"{kind} {axis}") for kind in (WITHOUT, WITH))
         if free is None or pushed is None:
             continue
-        if free.unit != pushed.unit:
-            raise InputError(
-                f"{free.header} and {pushed.header} have different units",
-                where=str(sheet.path),
-                remedy="Export both in one unit.",
-            )
+        _refuse_two_units(sheet, free, pushed)
         header = f"{free.header}, {pushed.header}"
         cells = _woven(free.cells, pushed.cells)
         columns.append(replace(free, header=header, meaning=axis, cells=cells))
@@ -79,15 +80,85 @@ def unfolded(sheet: Sheet) -> Sheet:
         unused=(*sheet.unused, *left),
         notes=(
             *sheet.notes,
-            "Each row is two readings, without load and with the load that it states. "
-            + (
-                "Every row has a zero reading of its own (displacement: {zero: separate})."
-                if own
-                else "Rows of one pose share a zero reading (displacement: {zero: shared})."
-            ),
+            "Each row is two readings, without load and with the load that it states. " + _OWN[own],
         ),
-        zero="separate" if own else "shared",
+        zero=_ZERO[own],
     )
+
+
+def _refuse_no_load(sheet: Sheet) -> None:
+    if not any(sheet.get(name) for name in LOADS):
+        raise InputError(
+            "positions stand there with and without load, and no column says the load",
+            where=str(sheet.path),
+            remedy="Add the columns fx[N], fy[N], fz[N] or payload[kg], or give --loads-file; with "
+            "--before one load in all rows is --wrench '0,0,-490 N'.",
+        )
+
+
+def _differences(sheet: Sheet) -> Sheet | None:
+    """Displacements of readings with and without load along some axes or along a direction.
+
+    A dial gauge reads one axis, and where the others were is not known: no position, but what the
+    load moved is the difference. None where all three axes are there, or half of a pair.
+
+    Raises:
+        InputError: As `unfolded`.
+    """
+    known = (*POSITIONS, GAUGE)
+    words = [w for w in known if any(sheet.get(f"{kind} {w}") for kind in (WITHOUT, WITH))]
+    pairs = {
+        word: (free, pushed)
+        for word in words
+        if (free := sheet.get(f"{WITHOUT} {word}")) and (pushed := sheet.get(f"{WITH} {word}"))
+    }
+    if len(pairs) < len(words) or set(POSITIONS) <= set(words):
+        return None
+    _refuse_no_load(sheet)
+    made, said = [], []
+    for word, (free, pushed) in pairs.items():
+        _refuse_two_units(sheet, free, pushed)
+        for column in (free, pushed):
+            numbers(sheet, column)
+        both = zip(free.cells, pushed.cells, strict=True)
+        cells = tuple(str(Decimal(after) - Decimal(before)) for before, after in both)
+        header = f"{pushed.header} less {free.header}"
+        meaning = word if word == GAUGE else f"d{word}"
+        made.append(replace(pushed, header=header, meaning=meaning, cells=cells))
+        said.append(f"{meaning if word != GAUGE else 'the gauge'} is {header}")
+    own = _read_anew(sheet, [free.cells for free, _ in pairs.values()])
+    taken = [column for pair in pairs.values() for column in pair]
+    return replace(
+        sheet,
+        columns=(*(c for c in sheet.columns if not any(c is t for t in taken)), *made),
+        notes=(
+            *sheet.notes,
+            f"Displacements are readings with load less those without: {listed(said)}. {_OWN[own]}",
+        ),
+        zero=_ZERO[own],
+        subtracted=True,
+    )
+
+
+def _refuse_two_units(sheet: Sheet, free: Column, pushed: Column) -> None:
+    if free.unit != pushed.unit:
+        raise InputError(
+            f"{free.header} and {pushed.header} have different units",
+            where=str(sheet.path),
+            remedy="Export both in one unit.",
+        )
+
+
+def _read_anew(sheet: Sheet, before: Sequence[tuple[str, ...]]) -> bool:
+    """Do readings without load differ from row to row of a pose? Of one axis, two rows of other
+    poses may well have the same."""
+    at = [c.cells for c in sheet.columns if c.meaning == "pose" or c.meaning.startswith("joint ")]
+    poses: dict[tuple[str, ...], list[tuple[str, ...]]] = {}
+    labels = zip(*(at or [tuple(map(str, sheet.lines))]), strict=True)
+    for pose, zero in zip(labels, zip(*before, strict=True), strict=True):
+        poses.setdefault(pose, []).append(zero)
+    again = [len(set(zeros)) > 1 for zeros in poses.values() if len(zeros) > 1]
+    return not again or sum(again) * 2 > len(again)
 
 
 def _woven(first: Sequence[T], second: Sequence[T]) -> tuple[T, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff import units
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
@@ -87,8 +88,26 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
     if hung is not None:
         return _hung(sheet, hung, told, W)
     if not there:
+        _refuse_several_forces(sheet)
         _refuse_a_force_along_nothing(sheet)
     return _forces(sheet, told, W) if there else Loads(W)
+
+
+def _refuse_several_forces(sheet: Sheet) -> None:
+    """Forces of several origins, as those of two sensors: which of them acts cannot be told.
+
+    Raises:
+        InputError: There are such.
+    """
+    headers = [c.header for c in sheet.spare]
+    groups = [group for group in groups_of(headers) if group.family == "load"]
+    if len(groups) > 1:
+        raise InputError(
+            f"{listed(shown(groups, headers), 'or')} may be the load",
+            where=str(sheet.path),
+            remedy="Call those that act on the robot fx[N], fy[N], fz[N] (mx[N*m], my, mz), or "
+            "take the others out.",
+        )
 
 
 def _refuse_a_force_along_nothing(sheet: Sheet) -> None:

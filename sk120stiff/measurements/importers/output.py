@@ -111,7 +111,8 @@ def settings_for(
         if draft.loads.payload is not None and told.point is not None:
             settings["payload"] = {"point": _point_entry(xyz)}
     else:
-        zero = {"zero": draft.sheet.zero} if mode == "load pairs" else {}
+        known = mode == "load pairs" or draft.sheet.subtracted
+        zero = {"zero": draft.sheet.zero} if known else {}
         settings["displacement"] = {"frame": "base", **zero}
     if registered and fitted is not None:
         settings["registered"] = _registered(fitted, draft)

@@ -5,17 +5,19 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
+from sk120stiff.measurements.importers.headerless import of_other_columns, shaped
 from sk120stiff.measurements.importers.layout import (
     POSITION,
+    SEARCHED,
     Layout,
     layout_of,
-    of_other_columns,
-    shaped,
     sheet_of,
 )
-from sk120stiff.measurements.importers.words import kind_of
+from sk120stiff.measurements.importers.unread_axes import gauge_pair
+from sk120stiff.measurements.importers.words import kind_of, unit_of_header
 
 _BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
 _HOLDS = (  # what a table is of, by the meanings of its columns
@@ -39,6 +41,8 @@ class Points:
             return Guess(0.4, "its columns are named")
         if _joints_alone(source) is not None:
             return Guess(0.05, "its columns are joints")
+        if source.role == "points" and _places(source):
+            return Guess(0.05, "its headers name positions")
         count, named, _ = shaped(source)
         if _names(source, count) is None or of_other_columns(source):
             return NO
@@ -51,6 +55,8 @@ class Points:
             InputError: Positions and joints without headers, which may come in either order.
         """
         layout = layout_of(source)
+        if layout is None and source.role == "points" and (places := _places(source)):
+            raise _several_places(source, places)
         if layout is None and (alone := _joints_alone(source)) is not None:
             _refuse_some_coordinates(source, alone)
             raise _no_positions(source, alone)
@@ -84,10 +90,41 @@ def _joints_alone(source: Source) -> Layout | None:
     return layout_of(replace(source, role="joints")) if source.role == "points" else None
 
 
+def _places(source: Source) -> list[str]:
+    """Composed headers of positions of which none could be chosen, as messages name them."""
+    for row in source.grid.rows[:SEARCHED]:
+        groups = [g for g in groups_of(row, source.actuated) if g.family == "place"]
+        if groups:
+            return shown(groups, row)
+    return []
+
+
+def _several_places(source: Source, places: list[str]) -> InputError:
+    topics = "/" in places[0]
+    if source.topic is not None:
+        return InputError(
+            f"no positions stand in columns of the topic {source.topic!r}",
+            where=str(source.path),
+            remedy=f"There are {listed(places)}.",
+        )
+    return InputError(
+        f"{listed(places, 'or')} may be the positions that were measured"
+        if len(places) > 1
+        else f"{places[0]} are commanded or nominal, and no measured position stands beside them",
+        where=str(source.path),
+        remedy=("Say which: --topic with what stands before position/x. " if topics else "")
+        + "Name all columns with --columns (x,y,z for those that were measured, of several markers "
+        "x1,y1,z1,x2,y2,z2, a dash for one that is not needed), or take the others out.",
+    )
+
+
 def _no_positions(source: Source, joints: Layout) -> InputError:
     """Joints, and other columns or none that may hold positions, displacements or distances."""
     pairs = zip(joints.headers, joints.meanings, strict=True)
     left = [h for h, m in pairs if h and (m is None or kind_of(m[0]) == "length")]
+    pair = gauge_pair([unit_of_header(h)[0] if h else "" for h in joints.headers])
+    if pair:
+        return _no_direction(source, joints, pair)
     if not left:
         return InputError(
             "this file holds joint values, and no positions",
@@ -104,6 +141,22 @@ def _no_positions(source: Source, joints: Layout) -> InputError:
         "dash for what is not needed. Distances to fixed points need no import: docs/FILES.md "
         "shows their file (l[mm],ax[m],ay[m],az[m]). If positions are in another file, give that "
         "as FILE, and this one as --joints-file.",
+    )
+
+
+def _no_direction(source: Source, joints: Layout, pair: dict[str, int]) -> InputError:
+    """A gauge was read without and with load, and nothing says along what."""
+    told = list(joints.headers)
+    for state, k in pair.items():
+        unit = joints.units[k]
+        told[k] = f"z {state}" + (f" [{unit_of_header(told[k])[1] or unit}]" if unit else "")
+    return InputError(
+        f"{listed([joints.headers[k] for k in pair.values()])} are what a gauge read without and "
+        "with load, and nothing says along which axis",
+        where=str(source.path),
+        remedy="Name the axis of the base along which its reading rises: --columns "
+        f"'{','.join(name or '-' for name in told)}' (x or y for another); if it falls along it, "
+        "or reads along another direction, add the columns ux, uy, uz of where it rises.",
     )
 
 

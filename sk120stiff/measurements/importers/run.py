@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,11 +33,13 @@ from sk120stiff.measurements.importers.hung_masses import (
     with_masses_of_all,
 )
 from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
-from sk120stiff.measurements.importers.load_pairs import unfolded
+from sk120stiff.measurements.importers.load_pairs import LOADS, unfolded
+from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
 from sk120stiff.measurements.importers.log import standstills
 from sk120stiff.measurements.importers.lost_readings import without_lost
 from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
 from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
+from sk120stiff.measurements.importers.numpy_archive import is_numpy, numpy_grid
 from sk120stiff.measurements.importers.orientation import (
     Orientation,
     understood,
@@ -56,7 +58,13 @@ from sk120stiff.measurements.importers.several_markers import (
 )
 from sk120stiff.measurements.importers.stations import loads_apart, with_stations
 from sk120stiff.measurements.importers.told import Mode, Told
-from sk120stiff.measurements.importers.workbook import is_workbook, workbook_grid
+from sk120stiff.measurements.importers.told_mass import with_told_mass
+from sk120stiff.measurements.importers.workbook import fitting_sheets, is_workbook, workbook_grid
+from sk120stiff.measurements.importers.workbook_sheets import (
+    named_sheets,
+    under_load,
+    without_used,
+)
 from sk120stiff.measurements.reading import assembled
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.measurements.settings import settings_of
@@ -122,7 +130,7 @@ def import_readings(
     before: Path | None = None,
     format_name: str | None = None,
     columns: Sequence[str] | None = None,
-    sheet: str | None = None,
+    sheet: str | Sequence[str] | None = None,
     topic: str | None = None,
     marker: str | None = None,
     into_base: bool | None = None,
@@ -139,7 +147,9 @@ def import_readings(
         before: Positions of the same poses without load; those of `path` are under it.
         format_name: The format, where the content leaves it open.
         columns: Names of the columns of a file without headers.
-        sheet, topic, marker: Which sheet of a workbook, topic of a recording, marker of several.
+        sheet: Which sheet of a workbook; several with what each is for: ``"before=Unloaded"``,
+            ``"joints=..."``, ``"loads=..."``, and that of the positions as it is called.
+        topic, marker: Which topic of a recording, marker of several.
         into_base: Turn positions into base axes by the best placing of the robot; None: only where
             displacements are made of them and their axes are others.
         formats: The formats that are known.
@@ -154,14 +164,16 @@ def import_readings(
     _refuse_beside_several(paths, {
         "--joints-file": joints_file, "--loads-file": loads_file, "--before": before,
     })  # fmt: skip
+    of_sheets = named_sheets([sheet] if isinstance(sheet, str) else sheet or [])
+    files = {"before": before, "joints": joints_file, "loads": loads_file}
     refuse_other_files([Path(one) for one in paths], told)
     sheets = [
         _sheet(
             Source(
                 Path(one), robot.actuated, "points", tuple(columns) if columns else None,
-                sheet, topic, marker,
+                of_sheets.get(""), topic, marker,
             ),
-            formats, format_name, joints_file, loads_file, before, told, robot.name,
+            formats, format_name, files, of_sheets, told, robot.name,
             [Path(each).stem for each in paths],
         )
         for one in paths
@@ -221,6 +233,7 @@ def import_readings(
         differences=int(paired_rows.sum()),
         useful_poses=len({draft.pose[k] for k in np.flatnonzero(paired_rows)}),
         doubts=(
+            *whole.doubts,
             *laid.doubts,
             *doubts,
             *([] if laid.fitted else unit_doubts(draft, robot)),
@@ -256,41 +269,87 @@ def _sheet(
     source: Source,
     formats: Formats,
     name: str | None,
-    joints_file: Path | None,
-    loads_file: Path | None,
-    before: Path | None,
+    files: Mapping[str, Path | None],
+    sheets: Mapping[str, str],
     told: Told,
     robot: str,
     beside: Sequence[str],
 ) -> Sheet:
+    """The readings of a file, with those of the files beside it: before, joints, loads."""
+    before, book = files["before"], not source.path.is_dir() and is_workbook(source.data)
+    same = book and before is not None and before.resolve() == source.path.resolve()
+    if same:
+        source = dataclasses.replace(source, state=WITH)
     whole = opened(source)
     importer, why = formats.chosen(whole, name)
     sheet = without_lost(importer.read(whole))
+    title = whole.grid.sheet if book else None
+    used = [title] if title else []
     if why == "as told":
         sheet = dataclasses.replace(sheet, title=importer.title, why=why)
     if before is not None:
-        free = opened(dataclasses.replace(source, path=before, sheet=None))
+        free = opened(dataclasses.replace(
+            source, path=before, sheet=sheets.get("before"), called="before",
+            state=WITHOUT if same else None, beside=title if same else None,
+        ))  # fmt: skip
+        used += [free.given.sheet] if same and free.given and free.given.sheet else []
         sheet = with_before(sheet, without_lost(formats.chosen(free, name)[0].read(free)), told)
-    if loads_file is None or told.payloads:
+    if files["loads"] is None or told.payloads:
         sheet = with_mass(sheet, told, robot, beside)
-    others: list[tuple[Role, Path | None]] = [("joints", joints_file), ("loads", loads_file)]
-    own = any(c.meaning.startswith("joint ") for c in sheet.columns)
-    if joints_file is None and not own and not source.path.is_dir() and is_workbook(source.data):
-        others[0] = ("joints", source.path)  # another sheet of the workbook may hold them
-    for role, path in others:
+    roles: tuple[Role, Role] = ("joints", "loads")
+    for role in roles:
+        path = files[role]
+        if path is None and book and _is_elsewhere(sheet, role, source, sheets, used, told):
+            path = source.path  # another sheet of the workbook holds them
         if path is None:
             continue
-        more = opened(Source(path, source.actuated, role))
+        more = opened(Source(path, source.actuated, role, sheet=sheets.get(role), called=role))
+        if path == source.path and more.given and more.given.sheet:
+            used.append(more.given.sheet)
         sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
-    return named(unfolded(understood_words(of_marker(sheet, source.marker), told)))
+    sheet = understood_words(of_marker(sheet, source.marker), told)
+    sheet = named(unfolded(with_told_mass(sheet, told)))
+    if book:
+        sheet = without_used(sheet, source.path, used)
+    if under_load(title) and not any(map(sheet.get, LOADS)):
+        said = (
+            f"By its name the sheet {title} is under a load, and no column says which: it is taken "
+            "to be without. Give --loads-file, or a column fx[N], fy[N], fz[N] or payload[kg]."
+        )
+        sheet = dataclasses.replace(sheet, doubts=(*sheet.doubts, said))
+    return sheet
+
+
+def _is_elsewhere(
+    sheet: Sheet,
+    role: Role,
+    source: Source,
+    sheets: Mapping[str, str],
+    used: Sequence[str],
+    told: Told,
+) -> bool:
+    """Are joints or loads, which these readings lack, in another sheet of their workbook?
+
+    Loads only where the readings are under one by the name of their sheet, or were told to be.
+    """
+    if role in sheets:
+        return True
+    if role == "joints":
+        return not any(c.meaning.startswith("joint ") for c in sheet.columns)
+    pushed = under_load(used[0]) if used else False
+    if told.wrench is not None or not pushed or any(map(sheet.get, LOADS)):
+        return False
+    return len(fitting_sheets(Source(source.path, source.actuated, role))) == 1
 
 
 def opened(source: Source) -> Source:
-    """The source with its rows, where a workbook or a MATLAB file holds them, or in two headers."""
+    """The source with its rows, where a workbook, MATLAB or numpy holds them, or in two headers."""
     if is_workbook(source.data):
         source = dataclasses.replace(source, given=workbook_grid(source))
     elif is_matlab(source.data):
         source = dataclasses.replace(source, given=matlab_grid(source))
+    elif is_numpy(source.data):
+        source = dataclasses.replace(source, given=numpy_grid(source))
     return with_numbered_markers(in_one_row(source))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import listed
 from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.load_states import WITH, WITHOUT, state_of
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, texts, unit_of
 
 AXES = ("dx", "dy", "dz")
@@ -17,7 +19,9 @@ ALONG = ("ux", "uy", "uz")
 BLANK = {
     "", "nan", "n/a", "na", "n.a.", "n.a", "-", "--", "---", "none", "null", "#n/a",
 }  # fmt: skip
-_GAUGES = ("d", "gauge", "dial gauge", "dial indicator", "messuhr", "comparateur")
+_GAUGES = (
+    "d", "gauge", "dial gauge", "dial indicator", "dial", "messuhr", "comparateur", "comparatore",
+)  # fmt: skip
 _Meaning = tuple[str, float] | None
 
 
@@ -27,11 +31,28 @@ def with_gauges(names: Sequence[str], meanings: Sequence[_Meaning]) -> list[_Mea
     plain = [" ".join(name.replace("_", " ").lower().split()) for name in names]
     read = [k for k, name in enumerate(plain) if name in _GAUGES and meanings[k] is None]
     others = {known[0] for known in meanings if known}
+    if set(ALONG) <= set(plain) and (pair := gauge_pair(names)):
+        told = {name: (name, 1.0) for name in ALONG} | {
+            plain[k]: (f"{state} {GAUGE}", 1.0) for state, k in pair.items()
+        }
+        return [told.get(name, known) for name, known in zip(plain, meanings, strict=True)]
     if len(read) != 1 or not set(ALONG) <= set(plain) or others & {"x", *AXES}:
         return list(meanings)
     turned = {k: (name, 1.0) for k, name in enumerate(plain) if name in ALONG}
     turned[read[0]] = (GAUGE, 1.0)
     return [turned.get(k, known) for k, known in enumerate(meanings)]
+
+
+def gauge_pair(names: Sequence[str]) -> dict[str, int]:
+    """``unloaded`` and ``loaded`` → the column of what one gauge read so; empty without both."""
+    out: dict[str, int] = {}
+    for k, name in enumerate(names):
+        said = state_of(" ".join(re.sub(r"[\s_.\-]+", " ", name).lower().split()))
+        if said and said[1] in _GAUGES:
+            if said[0] in out:
+                return {}
+            out[said[0]] = k
+    return out if len(out) == len((WITHOUT, WITH)) else {}
 
 
 def axes_among(meanings: Sequence[_Meaning]) -> list[int]:

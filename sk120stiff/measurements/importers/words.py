@@ -134,7 +134,12 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
 
 
 def is_unit(text: str) -> bool:
-    """Is this the name of a unit, that of a temperature, a mass or a dial gauge among them?"""
+    """Is this the name of a unit, that of a temperature, a mass or a dial gauge among them?
+
+    A number alone is none: it counts, as in ``position[1]``.
+    """
+    if text.strip().isdigit():
+        return False
     known = text.strip() in {*_DEGREES, "K", *MASSES} or units.is_unit(text)
     return known or counted_unit(text) is not None
 
@@ -207,6 +212,8 @@ def file_units(texts: list[str]) -> dict[str, str]:
 def kind_of(meaning: str) -> str | None:
     """Kind of the unit that a meaning has; None where it has none that could be told."""
     word = meaning.rpartition(" ")[2]
+    if meaning.startswith("orientation r") and word[1:].isdigit():  # r11: a number of a matrix
+        return None
     if meaning.startswith(("joint ", "orientation ", "turn ")):
         return "angle"
     if word in ("fx", "fy", "fz", "payload"):

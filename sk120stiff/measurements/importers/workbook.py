@@ -12,6 +12,8 @@ from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import Grid, is_number, with_points
 from sk120stiff.measurements.importers.header_rows import in_one_row
 from sk120stiff.measurements.importers.layout import layout_of
+from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
+from sk120stiff.measurements.importers.workbook_sheets import load_state
 
 _OLD = b"\xd0\xcf\x11\xe0"
 
@@ -22,12 +24,53 @@ def is_workbook(data: bytes) -> bool:
 
 
 def workbook_grid(source: Source) -> Grid:
-    """The sheet that was named, else the only one that holds what is needed.
+    """The sheet that was named, else the only one that holds what is needed, or the one of several
+    whose name says the state, unloaded or loaded, that is asked for.
 
     Raises:
         InputError: An .xls file, no such sheet, several, or formulas without values.
         MissingPart: openpyxl is not installed.
     """
+    where = str(source.path)
+    sheets = _sheets(source)
+    if source.sheet is not None:
+        if source.sheet not in sheets:
+            raise InputError(
+                f"no sheet with rows is called {source.sheet!r}",
+                where=where,
+                remedy=f"There are {', '.join(sheets)}.",
+            )
+        return _with_others(sheets, source.sheet)
+    fit = _with_headers(source, sheets)
+    fit = fit or [n for n, g in sheets.items() if any(map(_numbers, g.rows))]
+    if len(fit) > 1:
+        fit = [name for name in fit if name != source.beside]
+    if len(fit) > 1 and source.state is not None:
+        fit = [name for name in fit if load_state(name) == source.state] or fit
+    if len(fit) != 1:
+        raise (
+            _several(source, fit)
+            if fit
+            else InputError("no sheet holds readings", where=where, remedy="Check the file.")
+        )
+    return _with_others(sheets, fit[0])
+
+
+def fitting_sheets(source: Source) -> list[str]:
+    """Names of the sheets whose headers name what the file was given for.
+
+    Raises:
+        InputError, MissingPart: As `workbook_grid`.
+    """
+    return _with_headers(source, _sheets(source))
+
+
+def _with_headers(source: Source, sheets: dict[str, Grid]) -> list[str]:
+    return [n for n, grid in sheets.items() if _has_headers(replace(source, given=grid))]
+
+
+def _sheets(source: Source) -> dict[str, Grid]:
+    """Sheets with rows by their names."""
     where = str(source.path)
     if source.data.startswith(_OLD):
         raise InputError(
@@ -47,28 +90,30 @@ def workbook_grid(source: Source) -> Grid:
         raise InputError(
             f"this workbook cannot be read ({error})", where=where, remedy="Save it once more."
         ) from error
-    sheets = {
-        s.title: _grid(source, s, formulas[s.title]) for s in book.worksheets if s.max_row > 1
-    }
-    if source.sheet is not None:
-        if source.sheet not in sheets:
-            raise InputError(
-                f"no sheet with rows is called {source.sheet!r}",
-                where=where,
-                remedy=f"There are {', '.join(sheets)}.",
-            )
-        return sheets[source.sheet]
-    fit = {n: g for n, g in sheets.items() if _has_headers(replace(source, given=g))}
-    fit = fit or {n: g for n, g in sheets.items() if any(map(_numbers, g.rows))}
-    if len(fit) != 1:
-        raise InputError(
-            f"the sheets {', '.join(fit)} hold readings" if fit else "no sheet holds readings",
-            where=where,
-            remedy=f"Choose one: --sheet '{next(iter(fit))}'." if fit else "Check the file.",
-        )
-    (grid,) = fit.values()
-    others = tuple(f"sheet {name}" for name in sheets if sheets[name] is not grid)
-    return replace(grid, left=others)
+    return {s.title: _grid(source, s, formulas[s.title]) for s in book.worksheets if s.max_row > 1}
+
+
+def _with_others(sheets: dict[str, Grid], name: str) -> Grid:
+    others = tuple(f"sheet {other}" for other in sheets if other != name)
+    return replace(sheets[name], left=others)
+
+
+def _several(source: Source, fit: list[str]) -> InputError:
+    role = f"{source.called}=" if source.called else ""
+    pushed = [name for name in fit if load_state(name) == WITH]
+    free = [name for name in fit if load_state(name) == WITHOUT]
+    both = len(pushed) == len(free) == 1 and not source.called
+    return InputError(
+        f"the sheets {', '.join(fit)} hold readings",
+        where=str(source.path),
+        remedy=f"Choose one: --sheet '{role}{fit[0]}'."
+        + (
+            f" If they are the same poses without and with a load: --sheet '{pushed[0]}' --before "
+            f"{source.path.name}."
+            if both
+            else ""
+        ),
+    )
 
 
 def _has_headers(source: Source) -> bool:
@@ -98,7 +143,8 @@ def _grid(source: Source, sheet: Any, formulas: Any) -> Grid:
             rows.append(row)
             lines.append(number)
     how = f"sheet {sheet.title} of an Excel workbook"
-    grid = Grid(source.path, tuple(rows), tuple(lines), (), how, f"sheet {sheet.title}, ")
+    part = f"sheet {sheet.title}, "
+    grid = Grid(source.path, tuple(rows), tuple(lines), (), how, part, sheet=sheet.title)
     return with_points(grid) if rows else grid
 
 
