@@ -49,6 +49,7 @@ class Axes(StrEnum):
 
     base = "base"
     tool = "tool"
+    instrument = "instrument"
 
 
 class Dates(StrEnum):
@@ -110,7 +111,8 @@ def command(
         length: Unit of positions, where the file does not say it.
         angle: Unit of joint angles, where the file does not say it.
         load: Unit of fx,fy,fz or payload (kg: payload alone).
-        forces: Axes of fx,fy,fz and mx,my,mz. [default: base]
+        forces: Axes of fx,fy,fz and mx,my,mz; instrument: those in which the positions stand.
+            [default: base]
         wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
         payload (MASS): What hung on the tool in all rows, where no column says it: '5 kg'; of
             several files each by its name, 'a.csv=5 kg', or '*_b.csv=5 kg'. [default: where names

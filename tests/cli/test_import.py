@@ -217,6 +217,31 @@ def test_forces_in_axes_of_the_tool(run, tmp_path: Path) -> None:
     assert run("import", str(path), *told, "--forces", "flange").code == 2
 
 
+def test_forces_in_axes_of_the_instrument(run, tmp_path: Path) -> None:
+    """A cable's direction as the tracker saw it, beside positions in the same axes."""
+    robot = load_robot("motoman_sk120")
+    springs = np.array([1.4098e6, 4.0076e5, 9.3528e5])
+    turn = Rotation.from_euler("zyx", [70.0, 4.0, -3.0], degrees=True)
+    rng, lines = np.random.default_rng(2), ["x,y,z,q1,q2,q3,q4,q5,q6,fx,fy,fz"]
+    for a in rng.uniform(-0.4, 0.4, (12, 6)):
+        T, J = robot.placement(a), robot.jacobian(a)[:3, :3]
+        for push in (np.zeros(3), rng.uniform(-400.0, 400.0, 3)):
+            x = T[:3, 3] + J @ ((J.T @ push) / springs)
+            cells = [*(turn.apply(x) + [3.0, -1.0, 0.4]), *a, *turn.apply(push)]
+            lines.append(",".join(repr(float(v)) for v in cells))
+    path, out = tmp_path / "seen.csv", tmp_path / "own.csv"
+    path.write_text("\n".join(lines) + "\n")
+    told = (*TOLD, "--load", "N", "--out", str(out))
+    outcome = run("import", str(path), *told, "--forces", "instrument", "--json")
+    assert outcome.code == 0, outcome.stderr
+    values = [p["value"] for p in run("identify", str(out), "--json").document["parameters"]]
+    assert values == pytest.approx(springs.tolist(), rel=5e-3)
+    assert run("import", str(path), *told).code == 0  # taken for those of the base
+    assert "--forces instrument" in run("identify", str(out)).stderr
+    kept = run("import", str(path), *told, "--forces", "instrument", "--no-register")
+    assert kept.code == 2 and "--register" in kept.stderr
+
+
 def test_two_files_are_one_campaign(run, tmp_path: Path) -> None:
     whole = Path(marks(tmp_path, payload=False)).read_text().splitlines()
     parts = [tmp_path / "monday.csv", tmp_path / "friday.csv"]

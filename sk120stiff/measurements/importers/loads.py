@@ -32,7 +32,7 @@ class Loads:
     wrench: Array
     payload: Array | None = None
     taken: tuple[Column, ...] = ()
-    frame: Literal["base", "tool"] = "base"
+    frame: Literal["base", "tool", "instrument"] = "base"
     said: str = "No column holds a load: all rows are taken to be without."
 
 
@@ -165,6 +165,7 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
         "base": "Forces are taken to act on the robot, in axes of the base frame; of those of a "
         "sensor on the tool say --forces tool.",
         "tool": "Forces are taken to act on the robot, in axes of the tool frame.",
+        "instrument": "Forces are taken to act on the robot, in the axes in which positions stand.",
     }
     frame = told.forces or "base"
     zero = f" Of {listed(missing)} there is no column: taken as zero." if missing else ""

@@ -10,6 +10,7 @@ import yaml
 
 from sk120stiff import files, units
 from sk120stiff.arrays import Array
+from sk120stiff.errors import InputError
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.drafting import Draft, Written
 from sk120stiff.measurements.importers.frames import points_of, stood_of
@@ -95,7 +96,8 @@ def settings_for(
     else:
         settings["point"] = _point_entry(xyz)
     if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
-        settings["force"] = {"frame": draft.loads.frame}
+        frame = draft.loads.frame  # those of the instrument are turned, see `columns_for`
+        settings["force"] = {"frame": "base" if frame == "instrument" else frame}
         if mode == "positions" and sensed and told.point is None:
             settings["force"]["point"] = _point_entry(np.zeros(3))
             said += (
@@ -135,6 +137,8 @@ def columns_for(
     if draft.markers[0] and len(draft.markers[1]) > 1:
         columns.append(("marker", draft.markers[0]))
     forces = draft.loads.wrench if mode != "load pairs" else differences
+    if draft.loads.frame == "instrument":
+        forces = _in_base(forces, fitted, draft, registered=registered)
     if mode == "positions" and draft.loads.payload is not None:
         columns.append(("payload[kg]", _reprs(draft.loads.payload)))
     elif mode != "positions" or forces.any():
@@ -175,6 +179,26 @@ def _registered(fitted: Registration, draft: Draft) -> dict[str, Any] | list[dic
         return frames[0]
     named = zip(dict.fromkeys(draft.stations), frames, strict=True)
     return [{"station": station, **frame} for station, frame in named]
+
+
+def _in_base(
+    wrench: Array, fitted: Registration | None, draft: Draft, *, registered: bool
+) -> Array:
+    """(N, 6) loads in the instrument's axes, turned into those of the base.
+
+    Raises:
+        InputError: Nothing tells how the instrument stands.
+    """
+    if fitted is None or not registered:
+        raise InputError(
+            "how the instrument's axes stand to those of the base is not known, or not to be used",
+            where="--forces instrument",
+            remedy="Give positions with and without load, or --register; forces of displacements "
+            "in axes of their own have to be turned by hand.",
+        )
+    turns = fitted.turns[stood_of(draft)]
+    parts = [np.einsum("nji,nj->ni", turns, wrench[:, part]) for part in (slice(3), slice(3, 6))]
+    return np.hstack(parts)
 
 
 def _turned_sigmas(other: list[tuple[str, tuple[str, ...]]], turn: Array) -> list[Any]:

@@ -45,7 +45,8 @@ class Told:
             files by ``""``.
         joints: A column, or a linear expression of columns, for each actuated joint.
         coverage: What stated uncertainties are multiples of; as their header says by default.
-        forces: Axes of ``fx fy fz`` (``mx my mz``): ``"base"`` or ``"tool"``; base unless told.
+        forces: Axes of ``fx fy fz`` (``mx my mz``): ``"base"``, ``"tool"``, or ``"instrument"``,
+            those in which the positions stand; base unless told.
         dates: Whether the day or the month comes first in dates like 10/09/2026.
     """
 
@@ -59,7 +60,7 @@ class Told:
     joints: tuple[str, ...] | None = None
     coverage: float | None = None
     dates: DateOrder | None = None
-    forces: Literal["base", "tool"] | None = None
+    forces: Literal["base", "tool", "instrument"] | None = None
 
     def of(self, kind: str) -> str | None:
         """The unit that was told for a kind."""

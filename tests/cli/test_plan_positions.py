@@ -1,0 +1,65 @@
+"""`sk120stiff plan --positions`: where to read a marker, and what to hang on the tool."""
+
+from pathlib import Path
+
+import pytest
+
+MODEL = "robots/motoman_sk120/model.yaml"
+FEW = ("--candidates", "60")
+
+
+def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None:
+    plan, made = str(tmp_path / "plan.csv"), str(tmp_path / "made.csv")
+    asked = (
+        "--positions",
+        "--count",
+        "30",
+        "--payload",
+        "0,80 kg",
+        "--payload-point",
+        "0,0,100 mm",
+    )
+    outcome = run(
+        "plan", MODEL, *asked, "--candidates", "80", "--point", "60,0,150 mm", "--noise", "20 um",
+        "--out", plan, "--json",
+    )  # fmt: skip
+    assert outcome.code == 0, outcome.stderr
+    found = outcome.document
+    assert {row["payload_kg"] for row in found["poses"]} <= {0.0, 80.0}
+    assert len(found["poses"]) == 30 and found["sigma_um"] == pytest.approx(20.0)
+    assert 1.0 < found["foretold_um"] < 40.0 and found["gain"] > 1.0
+    assert run("plan", "--check", plan).code == 0
+    drawn = run("simulate", MODEL, plan, "--noise", "20 um", "--out", made)
+    assert "axes are those of the base" in drawn.stdout
+    identified = {
+        each["name"]: each for each in run("identify", made, "--json").document["parameters"]
+    }
+    told = [e for e in found["expected"] if "joint_springs" in e["name"] and e["reason"] is None]
+    assert told
+    for expected in told:
+        std = identified[expected["name"]]["std"]
+        assert std == pytest.approx(expected["std"], rel=0.15), expected["name"]
+    more = run(
+        "plan", MODEL, "--data", made, "--count", "3", "--candidates", "60", "--json"
+    ).document
+    assert {row["pose"] for row in more["poses"]} == {"next_1", "next_2", "next_3"}
+
+
+def test_payloads_stand_by_positions(run) -> None:
+    wrong = run("plan", MODEL, "--count", "4", "--payload", "5 kg")
+    assert wrong.code == 2 and "Add --positions" in wrong.stderr
+    for text in ("heavy", "-3 kg", "nan", "5", "5 kg or so", "nan kg"):
+        none = run("plan", MODEL, "--positions", "--count", "4", f"--payload={text}")
+        assert none.code == 2 and "is no mass" in none.stderr
+
+
+def test_a_plan_of_positions_says_why_it_cannot(run) -> None:
+    pulled = run("plan", MODEL, "--positions", "--count", "4", "--force", "100 N")
+    assert pulled.code == 2 and "--payload '0,5 kg'" in pulled.stderr
+    loads = run("plan", MODEL, "--positions", "--count", "4", "--loads", "3", "--payload", "9 kg")
+    assert loads.code == 2 and "3 payloads at each pose, and 1 is stated" in loads.stderr
+    many = run("plan", MODEL, "--positions", "--count", "90", *FEW)
+    assert many.code == 2 and "90 poses of 60 to choose from" in many.stderr
+    few = run("plan", MODEL, "--positions", "--count", "3", "--payload", "50 kg", *FEW, "--json")
+    assert few.document["remarks"][0].startswith("9 numbers cannot tell")
+    assert "foretold_um" not in few.document
