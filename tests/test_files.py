@@ -2,6 +2,7 @@
 
 import os
 import signal
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from sk120stiff.files import (
     note_read,
     read_bytes,
     read_text,
+    remembered,
     running,
     together,
     will_fill,
@@ -132,3 +134,18 @@ def test_a_workbook_is_told_from_text(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="this is a workbook") as refused:
         read_text(path)
     assert "sk120stiff import readings.xlsx" in str(refused.value.remedy)
+
+
+def test_an_interrupt_that_was_swallowed_stops_before_a_file_is_written(tmp_path: Path) -> None:
+    with remembered(), pytest.raises(KeyboardInterrupt):
+        with suppress(KeyboardInterrupt):  # as a library that catches everything
+            signal.raise_signal(signal.SIGINT)
+        write_atomically(tmp_path / "a.txt", "never")
+    assert not any(tmp_path.iterdir())
+    with remembered(), pytest.raises(KeyboardInterrupt), together():
+        write_atomically(tmp_path / "a.txt", "never")
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert not any(tmp_path.iterdir())
+    write_atomically(tmp_path / "a.txt", "now")  # what was asked of an earlier run is done
+    assert (tmp_path / "a.txt").read_text() == "now"

@@ -26,7 +26,7 @@ import typer
 from sk120stiff.cli.environment import visible
 from sk120stiff.cli.xacro_option import XacroArgs, takes_robot, with_xacro_arguments
 from sk120stiff.errors import InputError, Refusal, ToolkitError
-from sk120stiff.files import running
+from sk120stiff.files import remembered, running
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
@@ -68,7 +68,7 @@ def framed(body: Callable[..., Answer]) -> Callable[..., None]:
         *, as_json: bool, debug: bool, xacro_args: list[str] | None = None, **options: object
     ) -> None:
         with running(), _messages(debug=debug) as warned:
-            with guarded(debug=debug, as_json=as_json):
+            with guarded(debug=debug, as_json=as_json), remembered():
                 if xacro_args:
                     with_xacro_arguments(options, robots, xacro_args)
                 answer = body(**options)

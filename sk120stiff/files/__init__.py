@@ -6,6 +6,7 @@ Every reader of the package notes what it reads, and every writer looks there fi
 
 from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
 from sk120stiff.files.html_table import html_table
+from sk120stiff.files.interrupts import remembered
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
 from sk120stiff.files.reading import read_bytes, read_text
 from sk120stiff.files.schema import Finite, Strict, Vector, validated
@@ -25,6 +26,7 @@ __all__ = [
     "read_bytes",
     "read_text",
     "read_yaml",
+    "remembered",
     "running",
     "together",
     "validated",

@@ -13,6 +13,7 @@ from pathlib import Path
 from types import FrameType
 
 from sk120stiff.errors import InputError
+from sk120stiff.files.interrupts import stop_if_asked
 from sk120stiff.files.ledger import destination, note_written, refuse_input
 
 
@@ -26,6 +27,7 @@ def write_atomically(path: str | os.PathLike[str], content: str | bytes) -> Path
         InputError: `path` is an input of this run, no file, or its folder cannot be made or written
             to.
     """
+    stop_if_asked()
     named = Path(path)
     target = destination(named)
     refuse_input(named)
@@ -131,6 +133,7 @@ def together(*, stale: Iterable[Path] = (), last: Path | None = None) -> Iterato
     _open.append(files)
     try:
         yield
+        stop_if_asked()
         with _interrupts_wait():
             files.swap(stale, last)
     finally:
