@@ -137,15 +137,22 @@ def test_a_workbook_is_told_from_text(tmp_path: Path) -> None:
 
 
 def test_an_interrupt_that_was_swallowed_stops_before_a_file_is_written(tmp_path: Path) -> None:
-    with remembered(), pytest.raises(KeyboardInterrupt):
+    def swallowed() -> None:
         with suppress(KeyboardInterrupt):  # as a library that catches everything
             signal.raise_signal(signal.SIGINT)
+
+    def one_file() -> None:
+        swallowed()
         write_atomically(tmp_path / "a.txt", "never")
-    assert not any(tmp_path.iterdir())
-    with remembered(), pytest.raises(KeyboardInterrupt), together():
-        write_atomically(tmp_path / "a.txt", "never")
-        with suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-    assert not any(tmp_path.iterdir())
+
+    def a_set() -> None:
+        with together():
+            write_atomically(tmp_path / "a.txt", "never")
+            swallowed()
+
+    for written in (one_file, a_set):
+        with remembered(), pytest.raises(KeyboardInterrupt):
+            written()
+        assert not any(tmp_path.iterdir())
     write_atomically(tmp_path / "a.txt", "now")  # what was asked of an earlier run is done
     assert (tmp_path / "a.txt").read_text() == "now"

@@ -42,6 +42,10 @@ NOTHING_BENDS = (
     "neither weight nor payload puts a torque on it that shows; hang a heavier payload, or beside "
     "its axis"
 )
+PAIRED = (
+    "The URDF states no masses: every pose is read under two payloads, so that the arm's own "
+    "weight, which is not known, is in no difference."
+)
 MARKERS = "The instrument's frame and the markers' places are fitted beside what is to be known."
 
 
@@ -99,7 +103,7 @@ def plan_positions(
     model: Model,
     count: int | None = None,
     *,
-    loads: int = 1,
+    loads: int | None = None,
     payloads: Sequence[float] = (),
     payload_point: ArrayLike | None = None,
     between: tuple[Effect, Effect] | None = None,
@@ -120,7 +124,8 @@ def plan_positions(
     Args:
         model: Model with its values; its free parameters are to be known, beside the geometry.
         count: Number of poses; with `places` one at each by default.
-        loads: Number of payloads at each of them.
+        loads: Number of payloads at each of them; one by default, two of several where the URDF
+            states no masses: the arm's own weight, which nobody knows then, is in no difference.
         payloads: Masses that may hang on the tool [kg]; those of `known`, or none, by default.
         payload_point: (3,) where they hang in the tool frame [m].
         between: Two effects that are to be told apart instead.
@@ -146,13 +151,14 @@ def plan_positions(
         >>> model = sk.base_model(sk.load_robot("motoman_sk120"))
         >>> made = sk.plan_positions(model, 20, payloads=[0, 50], candidates=40)
         >>> made.n_readings, sorted(set(made.absolute.payload.tolist()))
-        (20, [0.0, 50.0])
+        (40, [0.0, 50.0])
     """
     if count is None and places is None:
         raise InputError("nothing says how many poses to plan", remedy="Give count, or places.")
     if sigma is not None and not 0.0 < sigma < np.inf:
         raise InputError(f"a plan with sigma = {sigma:g}", remedy="Give a positive number.")
     robot, used = model.robot, None
+    light = robot.total_mass == 0.0
     if known is not None:
         if known.absolute is None or known.is_plan:
             raise InputError("these readings are no positions", where=str(known.path or "known"))
@@ -160,6 +166,11 @@ def plan_positions(
     like = readings_like(robot, used, payloads, payload_point, point)
     within, a, remarks = _standing(robot, like, used, cell, places, count or 1, candidates, seed)
     pool = positions_pool(model, like, a, known=used, sigma=sigma)
+    hung = np.unique(pool.problem.said.payload)
+    if loads is None:
+        loads = 2 if light and len(hung) > 1 else 1
+        if loads == 2:
+            remarks = (PAIRED, *remarks)
     rivals = None if between is None else pool.rivalry(*between)
     wanted, untold = _wanted(pool, parameters) if rivals is None else ((), {})
     gains, before = pool.information
@@ -185,6 +196,8 @@ def plan_positions(
             names = (*wanted, *untold)
             chosen = Chosen(rest, design.rows, names, design.gain_over, untold, design=design)
         rows = pool.rows_of(left[list(chosen.rows)])
+        if not drive:  # masses are changed as seldom as can be
+            rows = rows[np.argsort(pool.problem.said.payload[rows], kind="stable")]
         taken = to_be_read(pool.problem.measurements.select(rows), SOURCE)
         taken = replace(taken, pose=labels_of(taken, used))
         return chosen, taken if places is None else places.named(taken)
@@ -200,6 +213,10 @@ def plan_positions(
     chosen, taken, way, left_out = drivable(
         choose, robot, within, drive=drive, named=named, seed=seed
     )
+    idle = np.setdiff1d(hung, taken.absolute.payload if taken.absolute is not None else hung)
+    if len(idle):
+        masses = ", ".join(f"{mass:g} kg" for mass in idle)
+        remarks = (*remarks, f"No reading hangs {masses} on the tool: the others tell more.")
     return PlanOfPositions.of(
         taken, model=pool.problem.model, chosen=chosen, standard=pool.standard, cell=within,
         known=known, seed=seed, way=way, left_out=left_out, candidates=pool,

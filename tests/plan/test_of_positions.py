@@ -118,7 +118,11 @@ def test_an_arm_without_weight_has_its_geometry_planned_alone(tmp_path: Path) ->
     with pytest.raises(InputError, match=r"nothing to plan for.*no masses"):
         sk.plan_positions(light, 12, parameters=[light.names[0]], candidates=40)
     hung = sk.plan_positions(light, 12, payloads=[10], point=AT, candidates=40)
-    assert "j2" in springs_of(hung)
+    assert "j2" in springs_of(hung) and hung.n_readings == 12
+    both = sk.plan_positions(light, 12, payloads=[0, 10], point=AT, candidates=40)
+    assert both.n_readings == 24 and len(both.poses) == 12  # each pose under both
+    assert (np.diff(both.absolute.payload) >= 0.0).all()  # hung once
+    assert any("in no difference" in said for said in both.remarks)
 
 
 def test_readings_there_are_give_markers_payloads_and_labels(

@@ -35,7 +35,7 @@ def command(
     robot: Annotated[str | None, typer.Argument()] = None,
     model: Path | None = None,
     count: Annotated[int | None, typer.Option(min=1)] = None,
-    loads: Annotated[int, typer.Option(min=1)] = 1,
+    loads: Annotated[int | None, typer.Option(min=1)] = None,
     check: Path | None = None,
     between: str | None = None,
     wanted: Annotated[list[str] | None, typer.Option("--for")] = None,
@@ -77,7 +77,8 @@ def command(
         robot (ROBOT): Robot or model file; --model does as well.
         model (MODEL): Model file (YAML), or a robot.
         count: Number of poses.
-        loads: Number of loads at each pose.
+        loads: Number of loads at each pose, or of payloads. [default: 1; 2 of several payloads
+            where the URDF states no masses]
         check (CSV): Plan nothing: say row by row what is wrong with this plan, these readings, or
             (of ROBOT) this path by joints, as 'posture' writes it.
         between (EFFECT,EFFECT): Tell these two apart: 'name' or 'name:where' each. [default: make
@@ -149,14 +150,13 @@ def command(
     with progress_bar("plan"):
         pull = parse_size(force or "400 N", "force", where="--force", like="400 N")
         kind = (
-            partial(plan_positions, **hung)
+            partial(plan_positions, loads=loads, **hung)
             if absolute
-            else partial(plan, force=pull, directions=directions)
+            else partial(plan, loads=loads or 1, force=pull, directions=directions)
         )
         made: Plan = kind(
             larger,
             count,
-            loads=loads,
             between=None if between is None else two_effects(start, between),
             parameters=names,
             point=None if point is None else at,
