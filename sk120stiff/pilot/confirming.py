@@ -16,7 +16,8 @@ class Confirmation:
     """What the full judgement says of a stop.
 
     Attributes:
-        agrees: It names the same, or a class that holds it, and nothing else.
+        agrees: It names the same, and nothing else, as sure as that no further reading tells it
+            from another; or, of a class, one that holds it.
         verdict: Its verdict, or why it could not judge.
         names: What it names, alternatives with a bar between them.
     """
@@ -37,4 +38,5 @@ def confirmed(model: Model, readings: Measurements, stop: Stop) -> Confirmation:
     every = all(group & wanted for group in found) and bool(found)
     if stop.reason == "named":
         every = every and all(any(name in group for group in found) for name in wanted)
+        every = every and all(finding.settled for finding in answer.findings)
     return Confirmation(every, answer.verdict, tuple("|".join(sorted(group)) for group in found))
