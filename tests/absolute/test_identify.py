@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.words import findings
-from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
+from tests.absolute.arm import NAMES, Arm, Array, errors, poses, tracked, write
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 NOISE = "noise: {sigma: 30, unit: um}\n"
@@ -133,3 +135,22 @@ def test_base_axes_are_checked(tmp_path: Path) -> None:
     assert calibrated(write(tmp_path, a, x, settings)).rms < 1e-3
     with pytest.raises(InputError, match="frame: unknown"):
         calibrated(write(tmp_path, a, tracked(x), settings))
+
+
+def test_a_second_campaign_starts_where_the_tracker_stands_now(tmp_path: Path) -> None:
+    """A model of last month holds the frame of the tracker as it stood then, and the marker."""
+    arm = errors(4)
+    a = poses(40, 4)
+    first = calibrated(write(tmp_path, a, noisy(tracked(arm.stands(a)[0]), 1), FIT + NOISE))
+    turn = Rotation.from_euler("zyx", [140.0, 20.0, -35.0], degrees=True)
+    moved = replace(arm, marker=arm.marker + np.array([0.03, 0.05, -0.06]))
+    b = poses(40, 5)
+    x = turn.apply(noisy(tracked(moved.stands(b)[0]), 2)) + [2.0, -1.0, 0.7]
+    path = write(tmp_path, b, x, FIT + NOISE)
+    again = calibrate(first.model, sk.read(path).with_joints(NAMES))
+    anew = calibrated(path)
+    assert again.misfit[2] > 1e-3
+    for name in ("j2", "j3"):
+        spring = f"joint_springs:{name}.stiffness"
+        one, other = (found.model.parameter(spring) for found in (again, anew))
+        assert abs(one.internal - other.internal) < 0.2 * other.internal_std

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from sk120stiff.arrays import Array
@@ -53,6 +55,8 @@ def started(
 
     def joined(model: Model, name: str, where: str, values: Array | None = None) -> Model:
         effect = catalogue.effect(robot, name, where, told)
+        if effect.id in present and values is not None:
+            return _standing_there(model, effect.id, values)
         if effect.id in present or not effect.parameters:
             return model
         internal = np.zeros(len(effect.parameters)) if values is None else values
@@ -91,6 +95,18 @@ def started(
         for where in catalogue["joint_frame"].places(robot):
             model = joined(model, "joint_frame", where)
     return model
+
+
+def _standing_there(model: Model, name: str, values: Array) -> Model:
+    """The model of an earlier campaign, instrument or marker where they stand in this one."""
+    own = [k for k, p in enumerate(model.parameters) if p.effect.id == name]
+    if len(own) != len(values):  # more stations or markers than before, or fewer
+        return model
+    parameters = list(model.parameters)
+    for k, value in zip(own, values, strict=True):
+        if parameters[k].free:
+            parameters[k] = replace(parameters[k], internal=float(value))
+    return replace(model, parameters=tuple(parameters))
 
 
 def loaded(model: Model, readings: Measurements) -> tuple[Model, list[str]]:

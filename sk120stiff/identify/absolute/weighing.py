@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import LoadError, Weighing
+from sk120stiff.effects import Effect, LoadError, Weighing
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.absolute.calibrate import Calibration, fitted
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
@@ -27,7 +27,7 @@ def pounds(found: Calibration) -> list[str]:
     said = problem.said
     if not said.payload.any() or not any(p.effect.joint_spring for p in found.parameters):
         return []
-    if any(isinstance(p.effect, LoadError | Weighing) for p in found.parameters):
+    if any(_weighs_otherwise(p.effect) for p in found.parameters):
         return []
     lighter = replace(said, payload=POUND * said.payload)
     other = PoseProblem(
@@ -48,3 +48,8 @@ def pounds(found: Calibration) -> list[str]:
         f"The payloads look like pounds: taken so, the fit leaves {100 * share**0.5:.0f} % of the "
         "gap. Write them in kg under payload[kg]."
     ]
+
+
+def _weighs_otherwise(effect: Effect) -> bool:
+    """May loads be of another size than stated with it? Where they act is no matter of size."""
+    return isinstance(effect, Weighing) or (isinstance(effect, LoadError) and not effect.of_payload)
