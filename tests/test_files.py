@@ -156,3 +156,12 @@ def test_an_interrupt_that_was_swallowed_stops_before_a_file_is_written(tmp_path
         assert not any(tmp_path.iterdir())
     write_atomically(tmp_path / "a.txt", "now")  # what was asked of an earlier run is done
     assert (tmp_path / "a.txt").read_text() == "now"
+
+
+def test_an_interrupt_that_is_ignored_stays_so() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # as of nohup
+    try:
+        with remembered():
+            signal.raise_signal(signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)

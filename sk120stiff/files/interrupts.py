@@ -19,9 +19,11 @@ _asked: list[int] = []
 def remembered() -> Iterator[None]:
     """Remember within this block that Ctrl-C was pressed, beside raising `KeyboardInterrupt`.
 
-    Other threads than the main one get no signals.
+    Other threads than the main one get no signals; where Ctrl-C is ignored, as of `nohup`, or has
+    another's handler, it stays so.
     """
-    if threading.current_thread() is not threading.main_thread():
+    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if threading.current_thread() is not threading.main_thread() or not usual:
         yield
         return
 

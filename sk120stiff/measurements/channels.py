@@ -200,8 +200,9 @@ class Channels:
         """Gaps of positions (N, 3) and their derivative (N, 3, P), along what they are told."""
         if self.rays is None:
             return gap, slope
-        along = np.einsum("nij,nj->ni", self.rays, gap)
-        return np.where(np.isnan(gap), np.nan, along), self.rays @ slope
+        blank = np.isnan(gap)  # of such a row the rays are the axes
+        along = np.einsum("nij,nj->ni", self.rays, np.where(blank, 0.0, gap))
+        return np.where(blank, np.nan, along), self.rays @ slope
 
     def _by_load(self, moved: Moved) -> dict[Kind, tuple[Array, Array]]:
         found: dict[Kind, tuple[Array, Array]] = {}

@@ -94,7 +94,7 @@ class PlanOfPositions(Plan):
         total = design.known + design.gains[list(design.rows)].sum(axis=0)
         everywhere = self.candidates.information[0].sum(axis=0)
         share = np.trace(np.linalg.solve(total, everywhere)) / len(problem.rows)
-        few = len(problem.model.free) > len(design.rows) * len(problem.rows) / len(design.gains)
+        few = len(problem.model.free) > size_of(self.candidates, len(design.rows))
         return np.nan if few else self.standard * float(np.sqrt(share))
 
 

@@ -70,6 +70,22 @@ def test_rows_are_told_along_their_rays_and_written_back(tmp_path: Path) -> None
     assert slope.shape == (3, 2)
 
 
+def test_a_blank_cell_leaves_the_others(tmp_path: Path) -> None:
+    path = written(tmp_path, 3, RAYS)
+    whole = fitted(path)
+    lines = path.read_text().splitlines()
+    cells = lines[7].split(",")
+    lines[7] = ",".join([*cells[:-3], "", *cells[-2:]])
+    path.write_text("\n".join(lines) + "\n")
+    blank = fitted(path)
+    assert len(blank.residual) == len(whole.residual) - 1
+    for name in ("j2", "j3"):
+        one, other = (
+            found.model.parameter(f"joint_springs:{name}.stiffness") for found in (whole, blank)
+        )
+        assert abs(one.internal - other.internal) < one.internal_std
+
+
 def test_springs_are_known_better_and_as_well_as_is_said(tmp_path: Path) -> None:
     """The same readings, weighed along their rays and as if all axes were alike."""
     off: list[float] = []

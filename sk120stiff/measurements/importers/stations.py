@@ -31,6 +31,7 @@ AS_WELL = 1.2  # times what is left with all that may have changed: so much is e
 # off from one part of its workspace to another (as delivered 0.1 to 0.3 %). A tracker that stands
 # elsewhere is off by centimetres, or by tenths of a degree at metres.
 SAGS = 0.005
+TOLD = 9  # poses that two files share, from which on `moved` tells a move from a load
 SHOWN = 4  # files that are told by name
 Columns = tuple[str, ...]
 
@@ -65,7 +66,7 @@ def with_stations(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Draft:
     best = min(left.values())
     if few and not np.isfinite(best):
         raise _in_no_frame(_with(draft, (), labels), few, mode, robot, told)
-    well = min(counts.values()) >= WELL and not (files and _may_sag_apart(draft, labels, poses))
+    well = min(counts.values()) >= WELL and not (files and _may_sag_apart(labels, poses))
     sag = 0.0 if well else SAGS * arm_length(robot)
     as_well = [w for w in ways if left[w] <= AS_WELL * best] or [("station",)]
     way = next((w for w in ways if left[w] <= np.hypot(AS_WELL * best, sag)), as_well[0])
@@ -111,19 +112,15 @@ def _with(
     return replace(draft, other=(*kept, *((header, of[header]) for header in way)))
 
 
-def _may_sag_apart(draft: Draft, labels: Columns, poses: NDArray[np.str_]) -> bool:
-    """May what differs from file to file be the sag of other loads? Loads that are stated tell it;
-    where none is, other loads are what the same poses are read again for.
+def _may_sag_apart(labels: Columns, poses: NDArray[np.str_]) -> bool:
+    """Was every file read at poses of another one, as under other loads? Then these tell whether
+    the tracker moved; else a frame for each costs little, and a tracker that moved is seen.
     """
-    loads: dict[str, set[tuple[float, ...]]] = {}
-    at: dict[str, set[str]] = {}
-    for label, wrench, pose in zip(labels, draft.loads.wrench.tolist(), poses, strict=True):
-        loads.setdefault(label, set()).add(tuple(wrench))
-        at.setdefault(label, set()).add(str(pose))
-    if draft.loads.taken:
-        first, *others = loads.values()
-        return any(own != first for own in others)
-    return len(set().union(*at.values())) < sum(map(len, at.values()))
+    at = {name: set(poses[np.array(labels) == name]) for name in dict.fromkeys(labels)}
+    return all(
+        any(len(own & others) >= TOLD for other, others in at.items() if other != name)
+        for name, own in at.items()
+    )
 
 
 def _pushed(
@@ -146,8 +143,9 @@ def _pushed(
     for name in names:
         heads = list(dict.fromkeys(out.values()))
         off = {h: moved(draft, rows[h], rows[name], number, robot, laid[1]) for h in heads}
-        same = [head for head, by in off.items() if by == 0.0 or by is None]
-        # A file that shares no poses with any other stays where nothing says it was moved.
+        same = [head for head, by in off.items() if by == 0.0]
+        if not same and len(heads) == 1 and off[heads[0]] is None:
+            same = heads  # it shares no poses with any other: nothing says that it was moved
         out[name] = same[0] if same else name
     return out
 
