@@ -30,6 +30,7 @@ class Chosen:
         evidence: √λ between the two effects before and after, in units of the noise; None where
             parameters are to be known.
         design: Where parameters are to be known: how well they will be.
+        loads: Of each pose.
     """
 
     pool: Pool
@@ -39,6 +40,7 @@ class Chosen:
     untold: Mapping[str, str] = field(default_factory=dict)
     evidence: tuple[float, float] | None = None
     design: Design | None = None
+    loads: int = 1
 
     def without(self, lost: Sequence[Array]) -> Chosen:
         """The same without some poses (n,)."""
@@ -49,9 +51,10 @@ class Chosen:
 
     def gains(self, seed: int) -> tuple[float, float]:
         """Median gain over random and over well-spread choices of the pool."""
-        rng, count = np.random.default_rng(seed + 1), len(self.rows)
-        random = [self.gain_over(random_choice(self.pool, count, rng)) for _ in range(DRAWS)]
-        spread = [self.gain_over(well_spread(self.pool, count, rng)) for _ in range(DRAWS)]
+        rng, loads = np.random.default_rng(seed + 1), self.loads
+        asked = self.pool, len(self.rows) // loads, rng, loads
+        random = [self.gain_over(random_choice(*asked)) for _ in range(DRAWS)]
+        spread = [self.gain_over(well_spread(*asked)) for _ in range(DRAWS)]
         return float(np.median(random)), float(np.median(spread))
 
 
@@ -85,7 +88,9 @@ def precise(
         parameters=[name for name in names if name not in untold],
     )  # fmt: skip
     names = [*design.parameters, *untold]
-    return Chosen(pool, design.rows, tuple(names), design.gain_over, untold, design=design)
+    return Chosen(
+        pool, design.rows, tuple(names), design.gain_over, untold, design=design, loads=size[1]
+    )
 
 
 def telling(
@@ -117,7 +122,8 @@ def telling(
         return choice.after / max(rivals.evidence_of(rows), 1e-12)
 
     names = (between[0].id, between[1].id)
-    return Chosen(pool, choice.rows, names, gain_over, evidence=(choice.before, choice.after))
+    evidence = choice.before, choice.after
+    return Chosen(pool, choice.rows, names, gain_over, evidence=evidence, loads=size[1])
 
 
 def _why_untold(effect: Effect, pool: Pool) -> str | None:

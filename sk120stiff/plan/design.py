@@ -248,28 +248,39 @@ def _open(rows: Sequence[int], owner: Index, count: int, loads: int) -> Mask:
     return np.asarray(open_rows)
 
 
-def random_choice(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
-    """Candidates drawn without preference."""
-    return [int(k) for k in rng.choice(pool.count, count, replace=False)]
+def random_choice(pool: Pool, count: int, rng: np.random.Generator, loads: int = 1) -> list[int]:
+    """Candidates drawn without preference: `count` poses, with so many of their loads each."""
+    if loads == 1:
+        return [int(k) for k in rng.choice(pool.count, count, replace=False)]
+    enough = np.flatnonzero(np.bincount(pool.pose) >= loads)
+    poses = rng.choice(enough, count, replace=False)
+    return [
+        int(row)
+        for pose in poses
+        for row in rng.choice(np.flatnonzero(pool.pose == pose), loads, replace=False)
+    ]
 
 
-def well_spread(pool: Pool, count: int, rng: np.random.Generator) -> list[int]:
+def well_spread(pool: Pool, count: int, rng: np.random.Generator, loads: int = 1) -> list[int]:
     """Candidates whose poses lie far apart in the joints' ranges, loaded along x, y, z in turn.
 
     The first pose is random, each further one is the farthest from those before (Gonzalez 1985);
-    of its loads the one nearest to the axis whose turn it is counts.
+    of its loads those nearest to the axes whose turn it is count.
     """
     load_cases = pool.load_cases
     lower, upper = usable_range(load_cases.robot)
     place = (load_cases.a - lower) / np.where(upper > lower, upper - lower, 1.0)
     along = unit(load_cases.wrench[:, :3])
-    distance = np.full(pool.count, np.inf)
-    pick = int(rng.integers(pool.count))
+    enough = (np.bincount(pool.pose) >= loads)[pool.pose]
+    distance = np.where(enough, np.inf, -1.0)
+    pick = int(rng.choice(np.flatnonzero(enough)))
     rows: list[int] = []
     for k in range(count):
-        same = np.flatnonzero((load_cases.a == load_cases.a[pick]).all(axis=1))
-        row = int(same[np.argmax(np.abs(along[same, k % 3]))])
-        rows.append(row)
+        same = np.flatnonzero(pool.pose == pool.pose[pick])
+        for turn in range(loads):
+            row = int(same[np.argmax(np.abs(along[same, (k + turn) % 3]))])
+            rows.append(row)
+            same = same[same != row]
         distance = np.minimum(distance, np.linalg.norm(place - place[pick], axis=1))
         pick = int(np.argmax(distance))
     return rows

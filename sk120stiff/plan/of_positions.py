@@ -194,7 +194,9 @@ def plan_positions(
                 pool.problem.model, wanted, gains[left], before, pool.span, size, own, loads
             )
             names = (*wanted, *untold)
-            chosen = Chosen(rest, design.rows, names, design.gain_over, untold, design=design)
+            chosen = Chosen(
+                rest, design.rows, names, design.gain_over, untold, design=design, loads=loads
+            )
         rows = pool.rows_of(left[list(chosen.rows)])
         if not drive:  # masses are changed as seldom as can be
             rows = rows[np.argsort(pool.problem.said.payload[rows], kind="stable")]
@@ -263,7 +265,8 @@ def _between(
         return choice.after / max(rivals.evidence_of(rows), 1e-12)
 
     names = (between[0].id, between[1].id)
-    return Chosen(pool, choice.rows, names, gain_over, evidence=(choice.before, choice.after))
+    evidence = choice.before, choice.after
+    return Chosen(pool, choice.rows, names, gain_over, evidence=evidence, loads=size[1])
 
 
 def _wanted(pool: PositionsPool, asked: Sequence[str]) -> tuple[tuple[str, ...], dict[str, str]]:

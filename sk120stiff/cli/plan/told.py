@@ -65,8 +65,8 @@ def _parameters(plan: Plan) -> Told:
     }
     said: list[object] = [
         table("To expect", ["parameter", "value", "std. error", "unit"], rows),
-        f"Standard errors {random:.2f} times smaller than with random poses, {spread:.2f} times "
-        "smaller than with well-spread ones.",
+        f"Standard errors {_times(random)} than with random poses, {_times(spread)} than with "
+        "well-spread ones.",
     ]
     if isinstance(plan, PlanOfPositions) and np.isfinite(plan.foretold):
         document["foretold_um"] = 1e6 * plan.foretold
@@ -95,3 +95,8 @@ def _effects(plan: Plan) -> Told:
         f"{before:.2f} before.",
         f"{random:.2f} times that of random poses, {spread:.2f} times that of well-spread ones.",
     ]
+
+
+def _times(gain: float) -> str:
+    """By how much standard errors are smaller, or larger, in words."""
+    return f"{gain:.2f} times smaller" if gain >= 1.0 else f"{1.0 / gain:.2f} times larger"
