@@ -24,23 +24,25 @@ from sk120stiff.identify.absolute.noise_sizes import (
     learned,
     of_poses,
 )
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.absolute.pose_problem import PoseProblem, row_lengths
+from sk120stiff.identify.absolute.refusals import (
+    nowhere,
+    refuse_a_wrong_end,
+    refuse_another_robot,
+)
 from sk120stiff.identify.absolute.start import loaded, started
 from sk120stiff.identify.absolute.waves import beside_waves, waves_that_show
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.placing import Placing, place
-from sk120stiff.measurements.placing_distances import EACH
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import targets_on_tool
 from sk120stiff.model import Model
-from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.rotations import rotation_of
 
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
 MORE_ROUNDS = 3  # where other rows are still set aside
-LARGEST = 0.03  # of the reach of the arm, which the fitted model of the right arm does not leave
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -112,19 +114,6 @@ class Calibration(Fit):
         return row_lengths(self.problem, self.x)
 
 
-def row_lengths(problem: PoseProblem, x: Array) -> Array:
-    """(K,) length of the gap at every row with a whole position [m]."""
-    position = problem.channels.position
-    if position is None or "position" not in problem.channels.present:
-        return np.zeros(0)
-    gap = problem.channel_gap(problem.values(x))[0]
-    held = problem.channels.held("position")
-    full = np.full(position.shape, np.nan)
-    full[held] = gap[problem.channels.kinds[0]]
-    length = np.linalg.norm(full, axis=1)
-    return np.asarray(length[np.isfinite(length)])
-
-
 def calibrate(
     model: Model,
     readings: Measurements,
@@ -164,7 +153,7 @@ def calibrate(
         seen = rotation_of(turn)[said.stood[1]]
         mounted, turns = targets_on_tool(model.robot, readings, seen)
     if placed is None and said.frame == "unknown" and set(said.channels.present) != {"inclination"}:
-        raise _nowhere(readings)
+        raise nowhere(readings)
     wild = np.zeros(readings.n_readings, dtype=bool) if placed is None else placed.wild
     geometry = geometry and not said.channels.displacements_alone
     start = started(
@@ -180,7 +169,9 @@ def calibrate(
     )
     found, frozen, wild = _fitted(start, readings, wild, shared=shared)
     if placed is None:
-        _refuse_another_robot(found, readings)
+        refuse_another_robot(found, readings)
+    else:
+        refuse_a_wrong_end(found, placed, readings)
     chosen: tuple[str, ...] = ()
     if waves:
         shown = waves_that_show(found, catalogue)
@@ -203,50 +194,6 @@ def calibrate(
         wild=wild,
         waves=chosen,
         notes=tuple(notes),
-    )
-
-
-def _nowhere(readings: Measurements) -> InputError:
-    """Nothing tells where the instrument stands: why, and what to do."""
-    present = () if readings.absolute is None else readings.absolute.channels.present
-    if "distance" in present:
-        why = f"fewer than {EACH} distances to each fixed point (ax, ay, az)"
-        remedy = f"Measure {EACH} poses or more against each, or state the points in base axes."
-    elif "position" in present:
-        why, remedy = "fewer than three whole positions", "Measure more poses."
-    else:
-        why = "there is no position and no distance"
-        remedy = (
-            "Leave 'position: {frame: unknown}' out and state directions and rotations in axes of "
-            "the base frame; or read positions beside them."
-        )
-    return InputError(
-        f"{why}: nothing tells where the instrument stands",
-        where=str(readings.path or "measurements"),
-        remedy=remedy,
-    )
-
-
-def _refuse_another_robot(found: Fit, readings: Measurements) -> None:
-    """Single axes or distances that no placing has looked at.
-
-    Raises:
-        InputError: The fit leaves more than any arm of that size does.
-    """
-    problem = of_poses(found)
-    gap = problem.of_channels.undo(found.residual)
-    left = float(np.sqrt(np.mean(gap[problem.lengths] ** 2))) if len(problem.lengths) else 0.0
-    reach = arm_length(found.model.robot)
-    if left <= LARGEST * reach:
-        return
-    worst = problem.lengths[np.argsort(-np.abs(gap[problem.lengths]))[:3]]
-    lines = ", ".join(str(problem.measurements.line[problem.rows[k]]) for k in worst)
-    raise InputError(
-        f"these readings are not of this robot's marker: {1e3 * left:.4g} mm are left, on an arm "
-        f"that reaches {1e3 * reach:.4g} mm",
-        where=f"{readings.path or 'measurements'}, worst in lines {lines}",
-        remedy="Check units, signs and order of the joint columns, and the frame: readings in the "
-        "tracker's own axes need 'position: {frame: unknown}' and some whole positions.",
     )
 
 

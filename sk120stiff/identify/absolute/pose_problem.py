@@ -262,3 +262,16 @@ class PoseProblem(Problem):
         gap, slope = self.channel_gap(self.values(x), derivative=True)
         white = self.of_channels.apply
         return white(gap), -white(slope[:, self.free] * self.scale)
+
+
+def row_lengths(problem: PoseProblem, x: Array) -> Array:
+    """(K,) length of the gap at every row with a whole position [m]."""
+    position = problem.channels.position
+    if position is None or "position" not in problem.channels.present:
+        return np.zeros(0)
+    gap = problem.channel_gap(problem.values(x))[0]
+    held = problem.channels.held("position")
+    full = np.full(position.shape, np.nan)
+    full[held] = gap[problem.channels.kinds[0]]
+    length = np.linalg.norm(full, axis=1)
+    return np.asarray(length[np.isfinite(length)])
