@@ -202,6 +202,10 @@ def plan_positions(
             rows = rows[np.argsort(pool.problem.said.payload[rows], kind="stable")]
         taken = to_be_read(pool.problem.measurements.select(rows), SOURCE)
         taken = replace(taken, pose=labels_of(taken, used))
+        if sigma is not None and taken.absolute is not None:
+            stated = {**taken.absolute.channels.sigma, "position": sigma, "distance": sigma}
+            channels = replace(taken.absolute.channels, sigma=stated)
+            taken = replace(taken, absolute=replace(taken.absolute, channels=channels))
         return chosen, taken if places is None else places.named(taken)
 
     numbers = size_of(pool, poses * loads)

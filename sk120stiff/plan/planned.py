@@ -15,6 +15,7 @@ from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.noise_statement import NoiseStatement
 from sk120stiff.model import Model, Parameter
 from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.choosing import Chosen, precise, telling
@@ -204,6 +205,8 @@ def plan(
         found = to_be_taken(
             robot, choice, chosen.rows, zero="unknown" if known is None else known.zero
         )
+        if sigma is not None:
+            found = replace(found, noise=NoiseStatement(sigma))
         return chosen, found if places is None else places.named(found)
 
     chosen, found, way, left_out = drivable(
