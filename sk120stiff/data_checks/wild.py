@@ -66,14 +66,21 @@ def without_wild(robot: Robot, measurements: Measurements) -> tuple[Measurements
     use = measurements.use.copy()
     use[wild] = False
     size = 1e3 * np.sqrt(np.nansum(measurements.displacement**2, axis=1))
-    named = "; ".join(f"{place_of(measurements, row)}: {size[row]:.3g} mm" for row in wild[:TOLD])
+    named = "; ".join(
+        f"{place_of(measurements, row)}: {_plain(size[row])} mm" for row in wild[:TOLD]
+    )
     more = " …" if len(wild) > TOLD else ""
     one = len(wild) == 1
     said = (
         f"{len(wild)} {'row is' if one else 'rows are'} so far off that no arm explains the "
         f"readings with {'it' if one else 'them'} ({named}{more}; the others "
-        f"{np.median(size[use]):.3g} mm in the median), and nearly all of the others without: "
+        f"{_plain(float(np.median(size[use])))} mm in the median), and nearly all of the others without: "
         f"{'it is' if one else 'they are'} set aside. Check what was read there, or write 0 into "
         "a column use."
     )
     return replace(measurements, use=use), said
+
+
+def _plain(value: float) -> str:
+    """Three significant digits, without an exponent."""
+    return f"{float(f'{value:.3g}'):g}"
