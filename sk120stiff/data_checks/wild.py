@@ -70,11 +70,11 @@ def without_wild(robot: Robot, measurements: Measurements) -> tuple[Measurements
         f"{place_of(measurements, row)}: {_plain(size[row])} mm" for row in wild[:TOLD]
     )
     more = " …" if len(wild) > TOLD else ""
-    one = len(wild) == 1
+    one, usual = len(wild) == 1, _plain(float(np.median(size[use])))
     said = (
         f"{len(wild)} {'row is' if one else 'rows are'} so far off that no arm explains the "
         f"readings with {'it' if one else 'them'} ({named}{more}; the others "
-        f"{_plain(float(np.median(size[use])))} mm in the median), and nearly all of the others without: "
+        f"{usual} mm in the median), and nearly all of the others without: "
         f"{'it is' if one else 'they are'} set aside. Check what was read there, or write 0 into "
         "a column use."
     )

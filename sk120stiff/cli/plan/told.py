@@ -70,9 +70,10 @@ def _parameters(plan: Plan) -> Told:
     ]
     if isinstance(plan, PlanOfPositions) and np.isfinite(plan.foretold):
         document["foretold_um"] = 1e6 * plan.foretold
+        size = f"{float(f'{1e6 * plan.foretold:.3g}'):g} um"
         said.append(
-            f"Where the marker stands will be foretold to {float(f'{1e6 * plan.foretold:.3g}'):g} um (standard "
-            "error per axis, over all poses to choose from), as far as the model's laws hold."
+            f"Where the marker stands will be foretold to {size} (standard error per axis, over "
+            "all poses to choose from), as far as the model's laws hold."
         )
     return document, [*said, *blind]
 
