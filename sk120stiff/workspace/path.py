@@ -247,7 +247,8 @@ def _branches(
     rest = np.clip(np.zeros(arm.n) if start is None else start, arm.lower, arm.upper)
     starts = starting_poses(arm, STARTS, rest)
     reached = solve_inverse(arm, first.rows(np.zeros(STARTS, dtype=np.intp)), starts)
-    found = different(reached.a[reached.found])
+    # a joint that turns more than once stands in one posture by several numbers
+    found = different(near(arm, reached.a[reached.found], rest))
     distance = np.linalg.norm(found - rest, axis=1)
     faults = [~ask(found) for ask in asked if ask and start is None and len(found)]
     return np.asarray(found[np.lexsort((distance, *faults))])

@@ -13,7 +13,7 @@ from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Cell, Places, feasible
 from sk120stiff.robot import Robot
 from sk120stiff.workspace.arm import elastic_arm
-from sk120stiff.workspace.inverse import Task, solve_inverse, starting_poses
+from sk120stiff.workspace.inverse import Task, middle_of, near, solve_inverse, starting_poses
 from sk120stiff.workspace.path import different, read_path
 
 STARTS = 64  # poses from which each place is sought
@@ -61,7 +61,7 @@ def places_of(file: Path, robot: Robot, cell: Cell, point: Array, axis: Array | 
             rotation=None if path.rotation is None or axis is not None else path.rotation[k],
         )
         reached = solve_inverse(arm, many, starts)
-        branches = different(reached.a[reached.found])
+        branches = different(near(arm, reached.a[reached.found], middle_of(arm)))
         if not len(branches):
             remarks.append(f"{label}: no pose reaches it.")
             continue
