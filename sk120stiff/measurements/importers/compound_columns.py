@@ -18,6 +18,8 @@ from sk120stiff.measurements.importers.compound_headers import (
     compound,
     is_hung_mass,
 )
+from sk120stiff.measurements.importers.orientation_columns import NUMBERED
+from sk120stiff.measurements.importers.words import unit_of_header
 
 Meanings = list[tuple[str, float] | None]
 _AXES = {"place": ("x", "y", "z"), "turn": ("qw", "qx", "qy", "qz")}
@@ -123,7 +125,7 @@ def with_compounds(
     families = _families(meanings)
     groups = groups_of(unknown, actuated)
     if "joint" in families:
-        notes += _beside_plain_joints(out, units_of, groups, headers)
+        notes += _beside_plain_joints(out, units_of, groups, headers, len(actuated))
     places = [g for g in groups if g.family == "place"]
     groups = [g for g in groups if g.family not in families]
     if "place" in families and places and where is not None:
@@ -179,7 +181,11 @@ def _families(meanings: Sequence[tuple[str, float] | None]) -> set[str]:
 
 
 def _beside_plain_joints(
-    out: Meanings, units_of: list[str | None], groups: list[Group], headers: Sequence[str]
+    out: Meanings,
+    units_of: list[str | None],
+    groups: list[Group],
+    headers: Sequence[str],
+    joints: int,
 ) -> list[str]:
     """Joints beside plain ones: measured ones are taken, else the plain ones; said in sentences.
 
@@ -189,7 +195,16 @@ def _beside_plain_joints(
     measured = [g for g in beside if g.said == MEASURED]
     commanded = [g for g in beside if g.said == COMMANDED]
     at = [k for k, m in enumerate(out) if m and m[0].startswith("joint ")]
-    plain = f"{headers[at[0]]} to {headers[at[-1]]}" if len(at) > 1 else headers[at[0]]
+    names = [unit_of_header(headers[k])[0].strip().lower() for k in at]
+    if measured and joints > len(NUMBERED) and set(NUMBERED) <= set(names) and "q5" not in names:
+        at = [k for k, name in zip(at, names, strict=True) if name not in NUMBERED]  # a quaternion
+    plain = (
+        ""
+        if not at
+        else f"{headers[at[0]]} to {headers[at[-1]]}"
+        if len(at) > 1
+        else headers[at[0]]
+    )
     for group in commanded:
         _set_commanded(out, group)
     if not measured:
@@ -206,11 +221,11 @@ def _beside_plain_joints(
         return []
     for k, each in measured[0].columns.items():
         out[k], units_of[k] = (each.meaning, 1.0), units_of[k] or each.unit
-    others = [plain, *(_called(group, headers) for group in commanded)]
+    others = [*([plain] if plain else []), *(_called(group, headers) for group in commanded)]
     return [
         f"{_called(measured[0], headers)} are taken, as measured joints; {listed(others)}, which "
         "may be commanded, are not."
-    ]
+    ] * bool(others)
 
 
 def _set_commanded(out: Meanings, group: Group) -> None:

@@ -86,3 +86,13 @@ def test_of_two_measured_groups_beside_plain_joints_none_is_taken(tmp_path: Path
     text = table(*DEGREES, *joints("q{}_meas_deg"), *joints("q{}_actual_deg"), *axes("{}_mm"))
     with pytest.raises(InputError, match=r"q6_meas_deg or|q6_meas_deg and"):
         draft_of(tmp_path, text)
+
+
+def test_plain_joints_beside_measured_ones_are_no_quaternion(tmp_path: Path) -> None:
+    found = draft_of(tmp_path, table(*DEGREES, *joints("q{}_meas [deg]"), *axes("{}_mm")))
+    assert not found.sheet.has("qw")
+    assert any("q1[deg]: commanded" in left for left in found.unused)
+    abb = table(*joints("J{}_meas [deg]"), *joints("q{}", count=4), *axes("{}_mm"))
+    sheet = sheet_of(tmp_path, abb)
+    column = sheet.get("joint 1")
+    assert sheet.has("qw", "qz") and column is not None and column.header == "J1_meas [deg]"
