@@ -198,13 +198,7 @@ def _beside_plain_joints(
     names = [unit_of_header(headers[k])[0].strip().lower() for k in at]
     if measured and joints > len(NUMBERED) and set(NUMBERED) <= set(names) and "q5" not in names:
         at = [k for k, name in zip(at, names, strict=True) if name not in NUMBERED]  # a quaternion
-    plain = (
-        ""
-        if not at
-        else f"{headers[at[0]]} to {headers[at[-1]]}"
-        if len(at) > 1
-        else headers[at[0]]
-    )
+    plain = _span([headers[k] for k in at])
     for group in commanded:
         _set_commanded(out, group)
     if not measured:
@@ -221,7 +215,7 @@ def _beside_plain_joints(
         return []
     for k, each in measured[0].columns.items():
         out[k], units_of[k] = (each.meaning, 1.0), units_of[k] or each.unit
-    others = [*([plain] if plain else []), *(_called(group, headers) for group in commanded)]
+    others = [*filter(None, [plain]), *(_called(group, headers) for group in commanded)]
     return [
         f"{_called(measured[0], headers)} are taken, as measured joints; {listed(others)}, which "
         "may be commanded, are not."
@@ -316,8 +310,11 @@ def _chosen(
 
 def _called(group: Group, headers: Sequence[str]) -> str:
     """The first and the last header of a group."""
-    names = [headers[k] for k in group.columns]
-    return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
+    return _span([headers[k] for k in group.columns])
+
+
+def _span(names: Sequence[str]) -> str:
+    return f"{names[0]} to {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def shown(groups: Sequence[Group], headers: Sequence[str]) -> list[str]:
