@@ -1,16 +1,16 @@
 """Which composed headers of a table are taken: of one family of columns one group, or none.
 
 Measured values are preferred to commanded ones, and a place that an instrument read to one of the
-robot's own; both are said. Where more than one group would fit none is taken, and `groups_of` names
-them for whoever has to ask.
+robot's own; both are said. Where more than one group would fit, or the robot's own pose alone, none
+is taken, and `groups_of` names them for whoever has to ask.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from sk120stiff.errors import listed
+from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.compound_headers import (
     COMMANDED,
     MEASURED,
@@ -18,12 +18,15 @@ from sk120stiff.measurements.importers.compound_headers import (
     compound,
     is_hung_mass,
 )
+from sk120stiff.measurements.importers.orientation_columns import NUMBERED
+from sk120stiff.measurements.importers.words import unit_of_header
 
 Meanings = list[tuple[str, float] | None]
 _AXES = {"place": ("x", "y", "z"), "turn": ("qw", "qx", "qy", "qz")}
 # Meanings beside which no other place is sought; where the marker sits is not told from the
 # robot's own pose, which is asked for.
 _PLACES = ("x", "y", "z", "loaded x", "unloaded x", "dx", "dy", "dz", "gauge", "tcp x")
+_AXIS = {axis: Compound(axis, None, "", "", instrument=False) for axis in "xyz"}
 _STATES = ("", "unloaded ", "loaded ")
 COMMANDED_JOINT = f"{COMMANDED} joint"  # begins the meaning of joints that stand beside measured
 
@@ -46,6 +49,11 @@ class Group:
     def meanings(self) -> set[str]:
         """Meanings of all its columns."""
         return {each.meaning for each in self.columns.values()}
+
+    @property
+    def own(self) -> bool:
+        """Is it a place that the robot's controller says?"""
+        return self.family == "place" and any(each.own for each in self.columns.values())
 
     def whole(self, joints: int) -> bool:
         """Does it hold all that belongs together, of a robot with so many joints?"""
@@ -96,6 +104,7 @@ def with_compounds(
     units: Sequence[str | None],
     actuated: tuple[str, ...],
     topic: str | None = None,
+    where: str | None = None,
 ) -> tuple[Meanings, list[str | None], list[str]]:
     """Meanings and units with composed headers, of families that no plain header names.
 
@@ -103,18 +112,25 @@ def with_compounds(
         headers, meanings, units: Of the columns, as plain headers say.
         actuated: The robot's joints.
         topic: Of several places the one to take, as the user told it.
+        where: The file, where positions are sought in it.
 
     Returns:
         Meanings, units, and what was chosen, in sentences.
+
+    Raises:
+        InputError: Places beside plain x, y, z of which no word says which were measured.
     """
     out, units_of, notes = list(meanings), list(units), []
     unknown = [h if m is None else "" for h, m in zip(headers, meanings, strict=True)]
     families = _families(meanings)
     groups = groups_of(unknown, actuated)
     if "joint" in families:
-        notes += _beside_plain_joints(out, groups, headers)
+        notes += _beside_plain_joints(out, units_of, groups, headers, len(actuated))
+    places = [g for g in groups if g.family == "place"]
     groups = [g for g in groups if g.family not in families]
-    _with_plain_places(out, groups, families, unknown, actuated)
+    if "place" in families and places and where is not None:
+        found, told = _beside_plain_places(out, places, headers, topic, where)
+        groups, notes = groups + found, notes + told
     taken: dict[str, Group] = {}
     for family in sorted({group.family for group in groups}):  # a place before its turn
         rivals = [group for group in groups if group.family == family]
@@ -164,17 +180,46 @@ def _families(meanings: Sequence[tuple[str, float] | None]) -> set[str]:
     return out
 
 
-def _beside_plain_joints(out: Meanings, groups: list[Group], headers: Sequence[str]) -> list[str]:
-    """Commanded joints beside plain ones, which are then what was measured; said in sentences."""
-    beside = [g for g in groups if g.family == "joint" and g.said == COMMANDED]
-    for group in beside:
+def _beside_plain_joints(
+    out: Meanings,
+    units_of: list[str | None],
+    groups: list[Group],
+    headers: Sequence[str],
+    joints: int,
+) -> list[str]:
+    """Joints beside plain ones: measured ones are taken, else the plain ones; said in sentences.
+
+    Of two that are measured none is taken, and no plain one.
+    """
+    beside = [g for g in groups if g.family == "joint"]
+    measured = [g for g in beside if g.said == MEASURED]
+    commanded = [g for g in beside if g.said == COMMANDED]
+    at = [k for k, m in enumerate(out) if m and m[0].startswith("joint ")]
+    names = [unit_of_header(headers[k])[0].strip().lower() for k in at]
+    if measured and joints > len(NUMBERED) and set(NUMBERED) <= set(names) and "q5" not in names:
+        at = [k for k, name in zip(at, names, strict=True) if name not in NUMBERED]  # a quaternion
+    plain = _span([headers[k] for k in at])
+    for group in commanded:
         _set_commanded(out, group)
-    plain = [h for h, m in zip(headers, out, strict=True) if m and m[0].startswith("joint ")]
+    if not measured:
+        return [
+            f"{plain} are taken for measured joints; {_called(group, headers)}, as commanded, are "
+            "not."
+            for group in commanded
+        ]
+    for k in at:
+        known = out[k]
+        number = known[0][6:] if known else ""
+        out[k] = (f"{COMMANDED_JOINT} {number}", 1.0) if len(measured) == 1 else None
+    if len(measured) > 1:
+        return []
+    for k, each in measured[0].columns.items():
+        out[k], units_of[k] = (each.meaning, 1.0), units_of[k] or each.unit
+    others = [*filter(None, [plain]), *(_called(group, headers) for group in commanded)]
     return [
-        f"{plain[0]} to {plain[-1]} are taken for measured joints; {_called(group, headers)}, as "
-        "commanded, are not."
-        for group in beside
-    ]
+        f"{_called(measured[0], headers)} are taken, as measured joints; {listed(others)}, which "
+        "may be commanded, are not."
+    ] * bool(others)
 
 
 def _set_commanded(out: Meanings, group: Group) -> None:
@@ -182,23 +227,46 @@ def _set_commanded(out: Meanings, group: Group) -> None:
         out[k] = f"{COMMANDED_JOINT} {each.meaning[6:]}", 1.0
 
 
-def _with_plain_places(
-    out: Meanings,
-    groups: list[Group],
-    families: set[str],
-    unknown: Sequence[str],
-    actuated: tuple[str, ...],
-) -> None:
-    """Where plain x, y, z stand beside those of an instrument, these are the measured ones."""
-    there = {known[0] for known in out if known}
-    if "place" not in families or not set("xyz") <= there or "measured x" in there:
-        return
-    read = [
-        g for g in groups_of(unknown, actuated)
-        if g.family == "place" and any(c.instrument for c in g.columns.values())
-    ]  # fmt: skip
-    if len(read) == 1 and set("xyz") <= read[0].meanings():
-        groups.append(read[0])
+def _beside_plain_places(
+    out: Meanings, places: list[Group], headers: Sequence[str], topic: str | None, where: str
+) -> tuple[list[Group], list[str]]:
+    """Places beside plain x, y, z: the one that is taken instead of these, and what was chosen.
+
+    Raises:
+        InputError: No word says which of them were measured.
+    """
+    at = {m[0]: k for k, m in reversed(list(enumerate(out))) if m}
+    by_word = {f"{MEASURED} {axis}" for axis in "xyz"} <= set(at)
+    if not by_word and not set("xyz") <= set(at):
+        return [], []
+    own = Group("place", "", "", {at[f"{MEASURED} {a}" if by_word else a]: _AXIS[a] for a in "xyz"})
+    told = [g for g in places if topic is not None and _is_of(g, topic)]
+    if len(told) == 1 and set("xyz") <= told[0].meanings() and not by_word:
+        return told, []
+    open_ = [g for g in places if g.said != COMMANDED and not g.own]
+    measured = [g for g in open_ if g.said == MEASURED and set("xyz") <= g.meanings()]
+    if by_word or not open_:
+        others = listed([_called(g, headers) for g in places])
+        return [], [f"{_called(own, headers)} are taken, as measured positions; {others} are not."]
+    if len(measured) == len(open_) == 1:
+        return measured, [
+            f"{_called(measured[0], headers)} are taken, as measured positions; "
+            f"{_called(own, headers)}, as nominal ones, are not."
+        ]
+    raise InputError(
+        f"{listed(shown([own, *open_], headers), 'or')} may be the positions that were measured",
+        where=where,
+        remedy="Say in their headers which are measured and which are nominal (x measured, "
+        "x nominal), name all columns with --columns (x,y,z for those that were measured, of "
+        "several markers x1,y1,z1,x2,y2,z2, a dash for one that is not needed), or take the "
+        "others out.",
+    )
+
+
+def _is_of(group: Group, topic: str) -> bool:
+    """Do its columns stand below a topic, as the user told it?"""
+    name = topic.strip("/")
+    return group.of.strip("/") == name or group.of.strip("/").startswith(f"{name}/")
 
 
 def _chosen(
@@ -206,13 +274,15 @@ def _chosen(
 ) -> tuple[Group | None, str]:
     """The one group that is taken, and what is to be said of it; None where it cannot be told."""
     if topic is not None and rivals[0].family in _AXES:
-        name = topic.strip("/")
-        rivals = [g for g in rivals if g.of == name or g.of.startswith(f"{name}/")]
+        rivals = [g for g in rivals if _is_of(g, topic)]
         if not rivals:
             return None, ""
     if rivals[0].family == "time":  # clocks of several topics
         return rivals[0], ""
-    by_word = [g for g in rivals if g.said == MEASURED]
+    own = rivals[0].family == "place" and all(g.own or g.said == COMMANDED for g in rivals)
+    if topic is None and own:
+        return None, ""  # nobody measured it: the controller computed it of the joints
+    by_word = [g for g in rivals if g.said == MEASURED and not g.own]
     read = [g for g in rivals if any(c.instrument for c in g.columns.values())]
     why = ""
     if len(rivals) == 1:
@@ -240,8 +310,11 @@ def _chosen(
 
 def _called(group: Group, headers: Sequence[str]) -> str:
     """The first and the last header of a group."""
-    names = [headers[k] for k in group.columns]
-    return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
+    return _span([headers[k] for k in group.columns])
+
+
+def _span(names: Sequence[str]) -> str:
+    return f"{names[0]} to {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def shown(groups: Sequence[Group], headers: Sequence[str]) -> list[str]:
@@ -256,4 +329,4 @@ def _as_subscript(header: str, known: Compound, plain: set[str]) -> Compound:
     others = {f"{header[:-1].lower()}{letter}" for letter in ("c", "n", "t", "d", "cmd", "nom")}
     if not others & plain:
         return known
-    return Compound(known.meaning, None, MEASURED, known.of, known.instrument)
+    return replace(known, unit=None, said=MEASURED)

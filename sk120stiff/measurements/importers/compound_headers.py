@@ -40,7 +40,12 @@ _QUALIFIERS = {
 # What stands before a reading: instruments of places, those of forces, and what carries them.
 INSTRUMENTS = _set(
     "lt tracker lasertracker leica faro radian vicon optitrack mocap motive qualisys qtm cmm romer "
-    "natnet"
+    "natnet vrpn"
+)
+_SEEN = INSTRUMENTS | _set("laser marker smr reflector")  # none of these is of the robot
+_ROBOT = _set("robot arm rtde controller tcp ee eef effector flange tool fk")  # its own pose
+_SENSOR = _set(  # what reads forces in axes of its own, or carries it
+    "ft fts sensor netft ati wrench loadcell transducer tool flange tcp ee"
 )
 _BEFORE = INSTRUMENTS | _set(
     "ft fts sensor netft ati wrench loadcell robot arm rtde controller encoder enc laser tcp ee "
@@ -82,6 +87,7 @@ class Compound:
         instrument: Is one that measures places among the words before?
         counted: Does a number alone behind ``position`` tell the joint? Then all of the robot's
             have to be there.
+        own: Is the robot among the words, and nothing that measures places?
     """
 
     meaning: str
@@ -90,6 +96,7 @@ class Compound:
     of: str
     instrument: bool
     counted: bool = False
+    own: bool = False
 
     @property
     def family(self) -> str:
@@ -129,12 +136,18 @@ def compound(header: str, actuated: tuple[str, ...] = ()) -> Compound | None:
         found = _of_words(_words(name), name, unit, actuated)
     if found is None or _READ.fullmatch(found.meaning) is None or not _fits(found):
         return None
-    return found
+    return replace(found, own=bool(_ROBOT & set(words)) and not _SEEN & set(words))
 
 
 def is_hung_mass(name: str) -> bool:
     """Is the column called as a mass on the tool, though it has no unit that tells it?"""
     return _HUNG.fullmatch(" ".join(_words(name)).lower()) is not None
+
+
+def of_a_sensor(name: str) -> bool:
+    """Do words of a force's column name a sensor, whose axes are its own?"""
+    words = {word.lower() for part in re.split(r"[/.]+", name) for word in _words(part)}
+    return bool(words & _SENSOR)
 
 
 def may_be_mass(name: str) -> bool:

@@ -36,17 +36,23 @@ def with_joint_names(
     """
     out = list(meanings)
     named = {(m["of"], m["number"]): k for k, h in enumerate(headers) if (m := _NAME.fullmatch(h))}
-    told: dict[int, str] = {}
+    beside: dict[int, tuple[int, list[str]]] = {}  # number → its name, as a column and as cells
     for k, header in enumerate(headers):
         match = _VALUE.fullmatch(header)
         place = named.get((match["of"], match["number"])) if match else None
         if place is None:
             continue
         cells = [row[place].strip("'\" ") for row in rows if place < len(row) and row[place]]
+        beside[k] = place, cells
+    joints = any((known := out[k]) and known[0].startswith("joint ") for k in beside)
+    if not joints and not set(actuated) & {name for _, cells in beside.values() for name in cells}:
+        return out, []  # names of points, say
+    told: dict[int, str] = {}
+    for k, (place, cells) in beside.items():
         if len(set(cells)) > 1:
             raise InputError(
-                f"{headers[place]} is {listed(sorted(set(cells))[:3])}: from row to row {header} "
-                "is of another joint",
+                f"{headers[place]} is {listed(sorted(set(cells))[:3])}: from row to row "
+                f"{headers[k]} is of another joint",
                 where=where,
                 remedy="Export the messages of the arm alone: those of a gripper, or of another "
                 "node, stand between them.",

@@ -207,12 +207,15 @@ def _understood(
     units_of = list(stated) if stated is not None else [unit for _, unit in named]
     known = [meaning(name, source.actuated) if name else None for name in names]
     known = with_gauges(names, with_states(names, known))
-    known, units_of, notes = with_compounds(headers, known, units_of, source.actuated, source.topic)
+    where = str(source.path)
+    known, units_of, notes = with_compounds(
+        headers, known, units_of, source.actuated, source.topic,
+        where if source.role == "points" else None,
+    )  # fmt: skip
     known, units_of = with_masses(names, known, units_of)
     known = with_torques(known, units_of)
     known = with_vendor_joints(names, known, source.actuated)
     known, of_matrix = with_matrices(names, known, below)
-    where = str(source.path)
     known, of_joints = with_joint_names(headers, known, below, source.actuated, where)
     return known, units_of, [*notes, *of_matrix, *of_joints]
 

@@ -11,6 +11,7 @@ from sk120stiff import units
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.compound_columns import groups_of, shown
+from sk120stiff.measurements.importers.compound_headers import of_a_sensor
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
@@ -45,7 +46,7 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
     Raises:
         InputError: Two of the three, a force without its axis beside displacements, moments without
             forces, a component that may stand in a column of another name, a unit that nobody said,
-            or a wrench for nothing.
+            a sensor's own axes that nobody told, or a wrench for nothing.
     """
     where = str(sheet.path)
     there = [
@@ -161,6 +162,8 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
         if column is not None:
             W[:, k] = quantity(sheet, column, kind, unit_of(sheet, column, kind, told))
             taken.append(column)
+    if told.forces is None:
+        _refuse_a_sensor_without_axes(sheet, taken)
     said = {
         "base": "Forces are taken to act on the robot, in axes of the base frame; of those of a "
         "sensor on the tool say --forces tool.",
@@ -170,6 +173,24 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
     frame = told.forces or "base"
     zero = f" Of {listed(missing)} there is no column: taken as zero." if missing else ""
     return Loads(W, None, tuple(taken), frame, said[frame] + zero)
+
+
+def _refuse_a_sensor_without_axes(sheet: Sheet, taken: list[Column]) -> None:
+    """A sensor reads in axes of its own, which turn with the tool that carries it.
+
+    Raises:
+        InputError: A header names one.
+    """
+    read = [c for c in taken if of_a_sensor(c.header)]
+    if read:
+        raise InputError(
+            f"{listed([c.header for c in read])} are called as those of a sensor or of the tool, "
+            "and nobody said in which axes they are",
+            where=str(read[0].file or sheet.path),
+            remedy="Give --forces tool if they are in axes of the tool frame, as a sensor on the "
+            "tool reads; --forces base if the controller turned them into those of the base; "
+            "--forces instrument if they are in those in which positions stand.",
+        )
 
 
 def _refuse_a_force_by_another_name(sheet: Sheet, missing: list[str]) -> None:

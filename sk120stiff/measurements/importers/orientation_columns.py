@@ -52,6 +52,8 @@ def with_quaternions(
     """Meanings of columns where q1 to q4 are no joints: those have names of their own beside."""
     plain, out = [name.strip().lower() for name in names], list(meanings)
     places = [plain.index(name) for name in NUMBERED if plain.count(name) == 1]
+    if any((known := meanings[k]) and not known[0].startswith("joint ") for k in places):
+        return out  # commanded joints, beside measured ones
     others = [known[0] for k, known in enumerate(meanings) if known and k not in places]
     if len(places) == len(NUMBERED) and all(f"joint {k}" in others for k in (1, 2, 3, 4)):
         for place, meaning in zip(places, QUATERNION, strict=True):

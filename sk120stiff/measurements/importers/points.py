@@ -110,7 +110,8 @@ def _several_places(source: Source, places: list[str]) -> InputError:
     return InputError(
         f"{listed(places, 'or')} may be the positions that were measured"
         if len(places) > 1
-        else f"{places[0]} are commanded or nominal, and no measured position stands beside them",
+        else f"{places[0]} are commanded, nominal or the robot's own, and no position that was "
+        "measured stands beside them",
         where=str(source.path),
         remedy=("Say which: --topic with what stands before position/x. " if topics else "")
         + "Name all columns with --columns (x,y,z for those that were measured, of several markers "

@@ -87,7 +87,7 @@ def test_measured_joints_are_preferred_to_commanded_ones_and_that_is_said(tmp_pa
         *joints("q{}_cmd_rad"), *joints("q{}_meas_rad"), *axes("lt_{}_m"), *axes("ft_f{}_N"),
         *axes("ft_t{}_Nm"),
     )  # fmt: skip
-    found = draft_of(tmp_path, text)
+    found = draft_of(tmp_path, text, forces="tool")
     assert [c.header for c in found.joints.taken] == list(joints("q{}_meas_rad"))
     assert [c.meaning for c in found.loads.taken] == ["fx", "fy", "fz", "mx", "my", "mz"]
     assert written(found)["x[m]"] == ("12", "22")
@@ -176,12 +176,6 @@ def test_an_instrument_is_preferred_to_the_robots_own_pose(tmp_path: Path) -> No
     column = sheet.get("x")
     assert column is not None and column.header == "/vicon/smr/point/x"
     assert any("as an instrument read them" in note for note in sheet.notes)
-
-
-def test_plain_coordinates_beside_those_of_an_instrument_were_nominal(tmp_path: Path) -> None:
-    text = table(*joints("q{}[deg]"), *axes("{}_mm"), *axes("lt_{}_mm"))
-    sheet = sheet_of(tmp_path, text)
-    assert [sheet.get(m).header for m in ("x", "nominal x")] == ["lt_x_mm", "x_mm"]  # type: ignore[union-attr]
 
 
 def test_forces_of_two_sensors_are_asked_for(tmp_path: Path) -> None:

@@ -79,3 +79,20 @@ def test_a_force_without_an_axis_is_asked_for_beside_displacements(tmp_path: Pat
     assert "direction" in caught.value.remedy
     free = draft_of(tmp_path, MOVED.format("Strom [A]", "1", "2"), length="mm", angle="deg")
     assert not free.loads.wrench.any()
+
+
+@pytest.mark.parametrize(
+    "form",
+    ["ft_{}[N]", "netft_{}[N]", "ati_{}[N]", "{}_sensor[N]", "tool_{}[N]", "flange_{}[N]",
+     "/ft/wrench/force/{}"],
+)  # fmt: skip
+def test_axes_of_a_sensor_are_asked_for(form: str, tmp_path: Path) -> None:
+    names = [form.format(a if "/" in form else f"f{a}") for a in "xyz"]
+    text = MOVED.format(",".join(names), "1,2,3", "4,5,6")
+    with pytest.raises(InputError, match="in which axes they are") as caught:
+        draft_of(tmp_path, text, length="mm", angle="deg", load="N" if "/" in form else None)
+    assert "--forces tool" in caught.value.remedy
+    loads = draft_of(
+        tmp_path, text, length="mm", angle="deg", forces="tool", load="N" if "/" in form else None
+    ).loads
+    assert loads.frame == "tool" and loads.wrench[0, 0] == 1.0
