@@ -197,8 +197,9 @@ def _with_column(sheet: Sheet, mass: float, stated: str) -> Sheet:
 
 
 def _told_mass(sheet: Sheet) -> str:
+    """The mass in words; rows read without load beside those under it have 0 kg."""
     column = _own(sheet)
-    return f"{float(column.cells[0]):g} kg" if column is not None else ""
+    return f"{max(map(float, column.cells)):g} kg" if column is not None else ""
 
 
 def _number(text: str) -> float:

@@ -111,18 +111,21 @@ def says_without(stem: str) -> bool:
     return _WITHOUT.search(stem) is not None
 
 
-def mass_told(text: str, where: str) -> float:
-    """Kilograms of ``5 kg``, ``500 g`` or ``10 lb``.
+LIKE = "Write it with its unit, like '5 kg'; of one file of several 'a.csv=5 kg'."
+
+
+def mass_told(text: str, where: str, remedy: str = LIKE) -> float:
+    """Kilograms of ``5 kg``, ``500 g`` or ``10 lb``; a comma in the number is a decimal one.
 
     Raises:
-        InputError: No mass with its unit.
+        InputError: No mass with its unit; `remedy` says how to write it.
     """
     match = _TOKEN.fullmatch(text.strip())
     if match is None:
         raise InputError(
             f"{text.strip()!r} is no mass",
             where=where,
-            remedy="Write it with its unit, like '5 kg'; of one file of several 'a.csv=5 kg'.",
+            remedy=remedy,
         )
     return _kilograms(match["number"], match["unit"])
 

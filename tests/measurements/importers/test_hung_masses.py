@@ -31,8 +31,9 @@ def written(folder: Path, name: str, above: str = "", sunk: float = 0.0) -> Path
     return path
 
 
-def brought(*paths: Path, **told: object) -> Imported:
-    return import_readings(list(paths), load_robot(ur5(), tool="tool0"), Told(**told))  # type: ignore[arg-type]
+def brought(*paths: Path, before: Path | None = None, **told: object) -> Imported:
+    robot = load_robot(ur5(), tool="tool0")
+    return import_readings(list(paths), robot, Told(**told), before=before)  # type: ignore[arg-type]
 
 
 def hung(found: Imported) -> list[float] | None:
@@ -158,6 +159,18 @@ def test_displacements_of_a_file_are_of_its_mass(tmp_path: Path) -> None:
     found = brought(path)
     assert found.mode == "displacements"
     assert dict(found.columns)["fz[N]"][0] == repr(-9.80665 * 5.0)
+
+
+def test_the_mass_in_words_is_that_of_the_rows_under_load(tmp_path: Path) -> None:
+    found = brought(written(tmp_path, "loaded_5kg.csv", sunk=1.0),
+                    before=written(tmp_path, "unloaded.csv"))  # fmt: skip
+    assert any("all rows of a file: 5 kg (loaded_5kg.csv)" in s for s in found.said)
+
+
+def test_a_decimal_comma_is_said_back_with_a_point(tmp_path: Path) -> None:
+    mass = mass_told("0,5 kg", "--payload")
+    found = brought(written(tmp_path, "a.csv"), payloads={"": mass})
+    assert any("as told: 0.5 kg (a.csv)" in s for s in found.said)
 
 
 def test_masses_that_are_told(tmp_path: Path) -> None:
