@@ -38,8 +38,8 @@ def held_orientations(
     values = _numbers(columns)
     if values is None:
         return {}, []
-    units = {column.unit for column in columns if column.unit} or {joint_unit}
-    period = PERIODS.get(units.pop() or "") if len(units) == 1 else None
+    units = {column.unit or joint_unit or "" for column in columns}
+    period = PERIODS.get(units.pop()) if len(units) == 1 else None
     good = _good(values)
     out, middle = [], 0
     for rows in holds:
