@@ -96,7 +96,7 @@ def masses_of_name(stem: str, robot: str = "", beside: Sequence[str] = ()) -> Wo
         if own and _plain(match.group()) in own:
             continue
         glued = re.search(r"[^\W\d_]$", before) and not called_so
-        why = why_not_in_name(stem, *match.span(), beside, called=called_so)
+        why = why_not_in_name(stem, *match.span(), beside, called=load)
         if why is None and match["unit"] == "g" and (not load or _few_grams(match)):
             why = GRAMS
         if why is None and glued:

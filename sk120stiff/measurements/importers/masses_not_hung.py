@@ -17,7 +17,7 @@ SHEET = "beside a robot's type or reach it may be what the robot bears"
 GRAMS = "grams count behind a word such as payload alone"
 
 _NUMBER = r"\d+(?:[.,p]\d+)?"
-_NO = "without|no|not|non|ohne|kein(?:e|en)?|sans|senza|zonder|wo"  # as far as the mass
+_NO = "without|no|not|non|ohne|kein(?:e|en)?|sans|senza|zonder|wo|sin carga"  # as far as the mass
 _NO_BESIDE = "sin|minus|less"  # directly before it: a sine, a negative angle
 _WITH = "with|mit|avec|con"  # ends what a word before denied
 _DENYING = re.compile(
@@ -58,7 +58,7 @@ COUNTING = (
 _COUNTING_TOO = (
     f"{COUNTING}|scan|sweep|cycle|try|part|pass|level|grid|batch|log|data|session|take|round|loop|"
     "week|cal(?:ib)?|rev|ver|version|exp|sample|tag|serie|lauf|datei|loads?|payload|weight|mass|"
-    "jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec|row|marker|joint|axis|target|mess|versuch"
+    "jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec|row|marker|tool|flange|frame|base|link|joint|axis|target|mess|versuch"
 )
 _GLUED = re.compile(  # UR10e, KR210_2700, R2000iC
     r"(?<![^\W_])(?P<letters>[^\W\d_]{2,8}|[^\W\d_](?=\d\d))(?P<digits>\d{1,4})[^\W\d_]{0,3}"
@@ -104,7 +104,7 @@ def why_not_in_name(
         stem: Name of a file without its ending.
         start, end: Where number and unit stand.
         beside: Such names of all files: masses or types that differ among them are no robot's.
-        called: Does a word such as *payload* stand directly before it?
+        called: Does a word such as *payload* stand directly before it, or behind?
     """
     before, behind = stem[:start], stem[end:]
     if denied(before):

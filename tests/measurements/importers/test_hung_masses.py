@@ -80,7 +80,7 @@ def test_masses_that_need_not_have_hung_are_left_and_said(name: str) -> None:
     [
         ("no_5kg_load", (0.0,)), ("unloaded_5kg", (0.0,)), ("ohne_greifer_mit_5kg", (5.0,)),
         ("no_2_5kg", (5.0,)), ("A_1_10kg", (10.0,)), ("run12_5kg", (5.0,)), ("lte_5g_test", ()),
-        ("acc_2g", ()), ("day2_5kg", (5.0,)),
+        ("acc_2g", ()), ("day2_5kg", (5.0,)), ("sk120_5kg_load", (5.0,)),
     ],
 )  # fmt: skip
 def test_what_a_name_says_of_a_mass(name: str, masses: tuple[float, ...]) -> None:
@@ -102,6 +102,7 @@ def test_masses_behind_a_type_that_differ_from_file_to_file_are_no_robots() -> N
         "UR5 robot payload 5 kg, reach 850 mm", "UR10e: payload 12.5 kg", "no payload 5 kg",
         "KR16 payload class 16 kg", "KR 16, payload 16 kg", "payload 5 kg set in controller",
         "payload configured 0.8 kg; hung 10 kg", "payload 10 kg, reach 1300 mm",
+        "sin carga 5 kg", "ohne Last 5 kg",
     ],
 )  # fmt: skip
 def test_lines_of_a_data_sheet_or_of_a_load_that_is_gone(text: str, tmp_path: Path) -> None:
@@ -140,6 +141,7 @@ def test_what_stands_in_the_robots_name_is_its_own() -> None:
         ("Traglast 16 kg", ()), ("load cell 20 kg", ()), ("payload unknown", ()),
         ("Robot UR10 payload 10 kg", ()), ("Sensor: Leica, payload 5 kg", (5.0,)),
         ("robot mass 33 kg", ()), ("mass of the arm: 33 kg", ()), ("loaded", ()),
+        ("payload 5 kg on tool0", (5.0,)), ("Leica AT960, payload 5 kg", (5.0,)),
     ],
 )  # fmt: skip
 def test_masses_of_comments(text: str, masses: tuple[float, ...]) -> None:
