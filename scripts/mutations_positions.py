@@ -157,7 +157,12 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "measurements/importers/masses_in_words.py", *tests("measurements/importers", "hung_masses"),
-        a_capacity_taken_for_a_payload=("or _NOT_HUNG.search(before.group() + said.group()):", "or False:"),
+        a_capacity_taken_for_a_payload=("            return Words(left=((text, why),))", "            pass"),
+    ),
+    *of(
+        "measurements/importers/masses_not_hung.py", *tests("measurements/importers", "hung_masses"),
+        what_a_robot_bears_taken_for_a_load=("return TYPE if robots and not", "return TYPE if False and not"),
+        a_load_that_is_denied=("    if denied(before):\n        return DENIED\n    off", "    off"),
     ),
     *of(
         "measurements/importers/lost_readings.py", *tests("measurements/importers", "lost_readings"),

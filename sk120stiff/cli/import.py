@@ -114,9 +114,10 @@ def command(
         forces: Axes of fx,fy,fz and mx,my,mz; instrument: those in which the positions stand.
             [default: base]
         wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
-        payload (MASS): What hung on the tool in all rows, where no column says it: '5 kg'; of
-            several files each by its name, 'a.csv=5 kg', or '*_b.csv=5 kg'. [default: where names
-            of files or lines above the tables say one mass, that]
+        payload (MASS): What hung on the tool in all rows, where no column says it: '5 kg', '500 g'
+            or '10 lb', one mass ('0,5 kg' is 0.5 kg); of several files each by its name, 'a.csv=5
+            kg', or '*_b.csv=5 kg'. [default: where names of files or lines above the tables say
+            one mass, that]
         coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
         dates: Day (dmy) or month (mdy) first in dates like 10/09/2026, where the file leaves it
             open.

@@ -4,6 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from sk120stiff.cli.plan.asked import hung_on
+from sk120stiff.errors import InputError
+
 MODEL = "robots/motoman_sk120/model.yaml"
 FEW = ("--candidates", "60")
 
@@ -26,6 +29,7 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
     assert outcome.code == 0, outcome.stderr
     found = outcome.document
     assert {row["payload_kg"] for row in found["poses"]} <= {0.0, 80.0}
+    assert found["remarks"][-1] == "Payloads are 0 kg and 80 kg (--payload)."
     assert len(found["poses"]) == 60 and found["sigma_um"] == pytest.approx(20.0)
     assert "sigma: 20" in Path(plan).with_suffix(".yaml").read_text()
     assert 1.0 < found["foretold_um"] < 40.0 and found["gain"] > 1.0
@@ -56,7 +60,7 @@ def test_payloads_stand_by_positions(run) -> None:
 
 def test_a_plan_of_positions_says_why_it_cannot(run) -> None:
     pulled = run("plan", MODEL, "--positions", "--count", "4", "--force", "100 N")
-    assert pulled.code == 2 and "--payload '0,5 kg'" in pulled.stderr
+    assert pulled.code == 2 and "--payload '0; 5 kg'" in pulled.stderr
     loads = run("plan", MODEL, "--positions", "--count", "4", "--loads", "3", "--payload", "9 kg")
     assert loads.code == 2 and "3 payloads at each pose, and 1 is stated" in loads.stderr
     many = run("plan", MODEL, "--positions", "--count", "90", *FEW)
@@ -64,3 +68,22 @@ def test_a_plan_of_positions_says_why_it_cannot(run) -> None:
     few = run("plan", MODEL, "--positions", "--count", "3", "--payload", "50 kg", *FEW, "--json")
     assert few.document["remarks"][0].startswith("9 numbers cannot tell")
     assert "foretold_um" not in few.document
+
+
+@pytest.mark.parametrize(
+    ("texts", "masses"),
+    [
+        (["500 g"], [0.5]), (["10 lb"], [4.5359237]), (["0,20 kg"], [0.0, 20.0]),
+        (["0,2.5,5 kg"], [0.0, 2.5, 5.0]), (["0; 2.5 kg"], [0.0, 2.5]), (["0 kg, 500 g"], [0, 0.5]),
+        (["0, 5 kg", "7 kg"], [0.0, 5.0, 7.0]),
+    ],
+)  # fmt: skip
+def test_payloads_to_choose_from(texts: list[str], masses: list[float]) -> None:
+    assert hung_on(texts, None, None, True)["payloads"] == pytest.approx(masses)
+
+
+@pytest.mark.parametrize("text", ["0,05 kg", "0,5; 5 kg", "0,5, 5 kg", "0,5 kg; 2,5 kg"])
+def test_a_comma_that_may_be_a_decimal_one_is_asked_for(text: str) -> None:
+    with pytest.raises(InputError, match="may be a decimal one") as refused:
+        hung_on([text], None, None, True)
+    assert "'0.5 kg'" in str(refused.value.remedy)

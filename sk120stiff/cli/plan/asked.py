@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TypedDict
 
-import numpy as np
-
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, effect
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.masses_in_words import mass_told
 from sk120stiff.model import Model
 from sk120stiff.units import parse_values
 
@@ -28,6 +28,9 @@ def named_parameters(model: Model, text: str) -> tuple[Model, list[str]]:
     if not dot:
         return larger, [p.name for p in larger.parameters if p.effect.id == added.id]
     return larger, [larger.parameter(text).name]
+
+
+LIKE = "Write it with its unit, like '5 kg'; several as '0; 5; 10 kg', or repeat the option."
 
 
 class Hung(TypedDict, total=False):
@@ -49,7 +52,7 @@ def hung_on(
         raise InputError(
             "nothing pulls the tool where positions are read",
             where="--force",
-            remedy="State what hangs on it: --payload '0,5 kg'.",
+            remedy="State what hangs on it: --payload '0; 5 kg'.",
         )
     if not absolute and (masses or point is not None):
         raise InputError(
@@ -68,22 +71,36 @@ def hung_on(
     return hung
 
 
+def masses_understood(masses: Sequence[float]) -> str:
+    """Which masses --payload was understood as, in a sentence."""
+    several = listed([f"{mass:g} kg" for mass in masses])
+    return f"Payloads are {several} (--payload)." if len(masses) > 1 else f"Payload: {several}."
+
+
 def _kilograms(text: str) -> list[float]:
-    """Masses of one --payload: '5 kg', or several with commas between them."""
-    numbers, unit, behind = text.rpartition("kg")
+    """Masses of one --payload: '5 kg', or several as '0; 2.5 kg', '0, 5 kg' or '0,5,10 kg'.
+
+    A comma without a blank parts whole numbers, or those with a point, and is no decimal comma. A
+    number without a unit has that of the last.
+
+    Raises:
+        InputError: No mass, or a comma that may be a decimal one.
+    """
+    words = [word.strip() for word in re.split(r";|,\s", text)]
+    if len(words) == 1 and "," in text:
+        words = [word.strip() for word in text.split(",")]
+    unit = re.search(r"[a-z]*$", words[-1], re.IGNORECASE)
     found = []
-    for word in (numbers if unit and not behind.strip() else "").split(","):
-        try:
-            mass = float(word.strip().removesuffix("kg"))
-        except ValueError:
-            mass = np.nan
-        if not 0.0 <= mass < np.inf:
+    for word in words:
+        number = re.fullmatch(r"\d+(?:\.\d+)?", word) and unit is not None
+        if "," in word or re.match(r"0\d", word):  # 0,05 kg; and 0,5 kg beside others
             raise InputError(
-                f"{text.strip()!r} is no mass",
+                f"a comma in {text.strip()!r} may be a decimal one, or part two masses",
                 where="--payload",
-                remedy="Write it in kg, like '5 kg'; several as '0,5,10 kg'.",
+                remedy="Write decimals with a point, '0.5 kg'; several masses as '0; 0.5 kg'.",
             )
-        found.append(mass)
+        mass = f"{word} {unit[0]}" if number and unit is not None else word
+        found.append(mass_told(mass, "--payload", LIKE))
     return found
 
 

@@ -15,7 +15,7 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, direction_of, model_for, open_data, open_model
 from sk120stiff.cli.options import SeedOption
 from sk120stiff.cli.outputs import will_draw, will_show
-from sk120stiff.cli.plan.asked import hung_on, named_parameters, two_effects
+from sk120stiff.cli.plan.asked import hung_on, masses_understood, named_parameters, two_effects
 from sk120stiff.cli.plan.check import checked, points_of
 from sk120stiff.cli.plan.told import told
 from sk120stiff.cli.tables import progress_bar
@@ -92,8 +92,9 @@ def command(
             data's, else the tool frame's origin]
         positions: Plan readings of where a marker stands (tracker, camera, arm), not of what a load
             does.
-        payload (MASS): Mass that hangs on the tool, with --positions: '5 kg'; repeat for several to
-            choose from. [default: those of --data, else none]
+        payload (MASS): Mass that hangs on the tool, with --positions: '5 kg', '500 g', '10 lb';
+            of several to choose from '0; 2.5 kg', or repeat it. Decimals have a point: '0,5 kg' is
+            0 kg and 5 kg here. [default: those of --data, else none]
         payload_point (XYZ): Where it hangs in the tool frame, '0,0,80 mm'. [default: that of
             --data, else the tool frame's origin]
         lowest (LENGTH): Height in the base frame below which nothing may go: '-0.3 m'. [default: as
@@ -196,19 +197,22 @@ def command(
             said.append(f"{poses} fewer than was asked for: ways to others are not free either.")
     floor = made.cell.floor
     heights = lowest_points(start.robot, made.joints, at, made.cell)
+    remarks = [*made.remarks]
+    if "payloads" in hung:
+        remarks.append(masses_understood(hung["payloads"]))
     document |= {
         "sigma_um": made.standard * 1e6,
         "seed": seed,
         "cell": within.source or None,
         "floor_m": floor if np.isfinite(floor) else None,
         "lowest_m": float(heights.min()),
-        "remarks": made.remarks,
+        "remarks": remarks,
         "route": way,
         "program": program,
         "page": page,
         "out": out,
     }
-    said += [*made.remarks, height_words(heights, made.pose, floor)]
+    said += [*remarks, height_words(heights, made.pose, floor)]
     if page is not None:
         from sk120stiff.show import static_scene
         from sk120stiff.show.stories import plan_scene

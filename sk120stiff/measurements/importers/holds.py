@@ -15,6 +15,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.drafting import Draft, near_poses
+from sk120stiff.measurements.importers.held_orientations import held_orientations
 from sk120stiff.measurements.importers.loads import FORCES, MOMENTS
 from sk120stiff.measurements.poses import rows_at_rest
 
@@ -160,15 +161,20 @@ def _pieces(changing: Index, joints: Array) -> list[Index]:
 
 
 def one_reading_each(draft: Draft, holds: Holds, notes: Sequence[str]) -> Sheet:
-    """The sheet with a row for each hold, the median of what was read in it; all others go."""
+    """The sheet with a row for each hold, the median of what was read in it, orientations too; all
+    others go."""
     sheet, still = draft.sheet, holds.rows
     middle = [int(run[len(run) // 2]) for run in still]
     medians = {c.meaning for c in sheet.columns if c.meaning in ("x", "y", "z")} | {
         c.meaning for c in draft.joints.taken
     }
     averaged = mean_loads(still)
+    units = {header.partition("[")[2].rstrip("]") for header, _ in draft.joints.written}
+    turned, told = held_orientations(sheet, still, next(iter(units & {"deg", "rad"}), None))
 
     def cut(column: Column) -> Column:
+        if column.meaning in turned:
+            return replace(column, cells=turned[column.meaning])
         if column.meaning not in medians:
             column = averaged(column)
             return replace(column, cells=tuple(column.cells[k] for k in middle))
@@ -186,7 +192,7 @@ def one_reading_each(draft: Draft, holds: Holds, notes: Sequence[str]) -> Sheet:
         spare=tuple(map(cut, sheet.spare)),
         lines=tuple(sheet.lines[k] for k in middle),
         rank=tuple(sheet.rank[k] for k in middle) if sheet.rank else (),
-        notes=(*sheet.notes, *notes),
+        notes=(*sheet.notes, *notes, *told),
     )
 
 

@@ -83,7 +83,9 @@ def with_masses_of_all(sheets: Sequence[Sheet]) -> list[Sheet]:
         return list(sheets)
     out = [
         _with_column(sheet, 0.0, FILE_NAME)
-        if not _of_loads(sheet) and says_without(sheet.path.stem)
+        if not _of_loads(sheet)
+        and says_without(sheet.path.stem)
+        and not masses_of_name(sheet.path.stem).left
         else sheet
         for sheet in sheets
     ]
@@ -91,6 +93,8 @@ def with_masses_of_all(sheets: Sequence[Sheet]) -> list[Sheet]:
     if lost:
         first, like = hung[0].path.name, lost[0].path.name
         rest = _some([sheet.path.name for sheet in lost])
+        if left := _left(lost):
+            rest += f"; not taken is {left[0][0]!r} in {left[0][1]}, as {left[0][2]}"
         raise InputError(
             f"what hung on the tool is known of {len(out) - len(lost)} of {len(out)} files ("
             f"{_told_mass(hung[0])} in {first}), and not of {rest}",
@@ -125,21 +129,49 @@ def say_masses(sheets: Sequence[Sheet]) -> list[str]:
 
 
 def doubts_of_names(sheets: Sequence[Sheet]) -> list[str]:
-    """What names of files say of forces where nothing else says a load, in a sentence."""
+    """What names of files say of forces where nothing else says a load, and which masses of names
+    and lines above tables were not taken, in sentences."""
+    out = []
+    if left := _left(sheets):
+        words = [f"{words!r} in {where} ({why})" for words, where, why in left]
+        out.append(
+            f"Not taken for what hung on the tool: {_some(words)}. If it hung there, say so: "
+            f"{OPTION} '5 kg', of one file of several {OPTION} 'FILE=5 kg'; {OPTION} '0 kg' says "
+            "that nothing did."
+        )
     named = {
         text: sheet.path.name
         for sheet in sheets
         if not _of_loads(sheet)
         for text in forces_of_name(sheet.path.stem)
     }
-    if not named:
-        return []
-    words = _some([f"{text} ({name})" for text, name in named.items()])
-    return [
-        f"Names of the files say {words}: forces whose direction they do not say, and nothing is "
-        "taken of them. Write columns fx[N], fy[N], fz[N] into each file (axes of the base; a "
-        f"weight is a negative fz), or say which mass hung there: {OPTION} 'FILE=5 kg'."
-    ]
+    if named:
+        words = [f"{text} ({name})" for text, name in named.items()]
+        out.append(
+            f"Names of the files say {_some(words)}: forces whose direction they do not say, and "
+            "nothing is taken of them. Write columns fx[N], fy[N], fz[N] into each file (axes of "
+            "the base; a weight is a negative fz), or say which mass hung there: "
+            f"{OPTION} 'FILE=5 kg'."
+        )
+    return out
+
+
+def _left(sheets: Sequence[Sheet]) -> list[tuple[str, str, str]]:
+    """Words, place and reason of masses that may be no load, where no column and nobody says one;
+    the same words in many files once."""
+    beside = [sheet.path.stem for sheet in sheets]
+    found: dict[tuple[str, str], tuple[str, str, str]] = {}
+    for sheet in sheets:
+        own = _own(sheet)
+        if own.stated == OPTION if own else _of_loads(sheet):
+            continue
+        name = sheet.path.name
+        for words, why in masses_of_name(sheet.path.stem, beside=beside).left:
+            found.setdefault((words, why), (words, f"the name {name}", why))
+        for number, text in sheet.remarks:
+            for words, why in masses_of_comment(text).left:
+                found.setdefault((words, why), (words, f"line {number} of {name}", why))
+    return list(found.values())
 
 
 def refuse_other_files(paths: Sequence[Path], told: Told) -> None:
@@ -197,8 +229,9 @@ def _with_column(sheet: Sheet, mass: float, stated: str) -> Sheet:
 
 
 def _told_mass(sheet: Sheet) -> str:
+    """The mass in words; rows read without load beside those under it have 0 kg."""
     column = _own(sheet)
-    return f"{float(column.cells[0]):g} kg" if column is not None else ""
+    return f"{max(map(float, column.cells)):g} kg" if column is not None else ""
 
 
 def _number(text: str) -> float:

@@ -31,8 +31,9 @@ def written(folder: Path, name: str, above: str = "", sunk: float = 0.0) -> Path
     return path
 
 
-def brought(*paths: Path, **told: object) -> Imported:
-    return import_readings(list(paths), load_robot(ur5(), tool="tool0"), Told(**told))  # type: ignore[arg-type]
+def brought(*paths: Path, before: Path | None = None, **told: object) -> Imported:
+    robot = load_robot(ur5(), tool="tool0")
+    return import_readings(list(paths), robot, Told(**told), before=before)  # type: ignore[arg-type]
 
 
 def hung(found: Imported) -> list[float] | None:
@@ -45,10 +46,11 @@ def hung(found: Imported) -> list[float] | None:
     [
         ("UR10_payload_5kg", (5.0,)), ("pose_001_3kg", (3.0,)), ("load10kg", (10.0,)),
         ("a_2.5kg", (2.5,)), ("a_2,5 kg", (2.5,)), ("a_2p5kg", (2.5,)), ("load_2_5kg", (2.5,)),
-        ("pose_2_5kg", (5.0,)), ("2_5kg", (5.0, 2.5)), ("x_500g", (0.5,)), ("m=3kg", (3.0,)),
+        ("pose_2_5kg", (5.0,)), ("2_5kg", (5.0, 2.5)), ("load_500g", (0.5,)),
+        ("x_500g", ()), ("m=3kg", (3.0,)),
         ("a-5Kg-b", (5.0,)), ("10lb", (4.5359237,)), ("mit_5kg_KR16", (5.0,)),
         ("robot_14kg_load_5kg", (5.0,)), ("load_0kg_5kg", (5.0, 0.0)), ("0kg", (0.0,)),
-        ("UR10_5kg", (5.0,)), ("2026-11-22_5kg", (5.0,)), ("m2_5kg", (2.5,)),
+        ("UR10_5kg", ()), ("2026-11-22_5kg", (5.0,)), ("m2_5kg", (2.5,)),
         ("a_2_5kg", (5.0, 2.5)),
         ("KR210", ()), ("UR5", ()), ("KR16kg", ()), ("max_10kg_a", ()), ("200N", ()),
         ("5G", ()), ("10kgf", ()), ("12gauge", ()),
@@ -56,6 +58,67 @@ def hung(found: Imported) -> list[float] | None:
 )  # fmt: skip
 def test_masses_of_names(name: str, masses: tuple[float, ...]) -> None:
     assert sorted(masses_of_name(name).masses) == pytest.approx(sorted(masses))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "without_5kg", "sans_5kg", "minus_5kg", "empty_5kg", "no_load_vs_5kg",
+        "payload_5kg_removed",
+        "brake_off_5kg", "payload_class_16kg", "payload_max_5kg", "IRB6700_155kg", "ur10e_12_5kg",
+        "irb_6700_155_kg", "kr_16kg", "sk120_120kg", "KR 16kg arm", "M-20kg", "robot_165kg",
+        "counterweight_30kg", "crane_500kg", "tare_2kg", "x_500g", "KR16kg", "max 10kg",
+    ],
+)  # fmt: skip
+def test_masses_that_need_not_have_hung_are_left_and_said(name: str) -> None:
+    found = masses_of_name(name)
+    assert found.masses == () and len(found.left) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "masses"),
+    [
+        ("no_5kg_load", (0.0,)), ("unloaded_5kg", (0.0,)), ("ohne_greifer_mit_5kg", (5.0,)),
+        ("no_2_5kg", (5.0,)), ("A_1_10kg", (10.0,)), ("run12_5kg", (5.0,)), ("lte_5g_test", ()),
+        ("acc_2g", ()), ("day2_5kg", (5.0,)), ("sk120_5kg_load", (5.0,)),
+    ],
+)  # fmt: skip
+def test_what_a_name_says_of_a_mass(name: str, masses: tuple[float, ...]) -> None:
+    found = masses_of_name(name)
+    assert found.masses == masses and not found.left
+
+
+def test_masses_behind_a_type_that_differ_from_file_to_file_are_no_robots() -> None:
+    assert masses_of_name("ur10_5kg", beside=("ur10_0kg", "ur10_5kg")).masses == (5.0,)
+    assert masses_of_name("ur10_0kg").masses == (0.0,)
+    assert masses_of_name("ur10_5kg", beside=("ur10_5kg", "ur10_5kg_b")).masses == ()
+    assert masses_of_name("AB12_5kg", beside=("AB12_5kg", "AB13_5kg")).masses == (5.0,)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "payload 5 kg removed before the readings", "payload 5 kg, removed before the readings",
+        "UR5 robot payload 5 kg, reach 850 mm", "UR10e: payload 12.5 kg", "no payload 5 kg",
+        "KR16 payload class 16 kg", "KR 16, payload 16 kg", "payload 5 kg set in controller",
+        "payload configured 0.8 kg; hung 10 kg", "payload 10 kg, reach 1300 mm",
+        "sin carga 5 kg", "ohne Last 5 kg",
+    ],
+)  # fmt: skip
+def test_lines_of_a_data_sheet_or_of_a_load_that_is_gone(text: str, tmp_path: Path) -> None:
+    found = brought(written(tmp_path, "a.csv", f"# {text}"))
+    assert hung(found) is None
+    (doubt,) = [d for d in found.doubts if "Not taken for what hung on the tool" in d]
+    assert "line 1 of a.csv" in doubt and "--payload 'FILE=5 kg'" in doubt
+    told = brought(written(tmp_path, "a.csv", f"# {text}"), payloads={"": 5.0})
+    assert hung(told) == [5.0] and not any("Not taken" in d for d in told.doubts)
+
+
+def test_a_file_that_is_without_a_mass_is_asked_for_beside_one_with_it(tmp_path: Path) -> None:
+    paths = [written(tmp_path, "without_5kg.csv"), written(tmp_path, "with_5kg.csv", sunk=1.0)]
+    with pytest.raises(InputError, match=r"not taken is '5kg' in the name without_5kg\.csv"):
+        brought(*paths)
+    assert hung(brought(*paths, payloads={"without_5kg": 0.0})) == [0.0, 5.0]
 
 
 def test_a_number_that_counts_the_files_is_no_part_of_the_mass() -> None:
@@ -72,12 +135,13 @@ def test_what_stands_in_the_robots_name_is_its_own() -> None:
 @pytest.mark.parametrize(
     ("text", "masses"),
     [
-        ("UR10 payload 10 kg", (10.0,)), ("Last: 2,5 kg", (2.5,)), ("m = 500 g", (0.5,)),
+        ("payload 10 kg", (10.0,)), ("Last: 2,5 kg", (2.5,)), ("m = 500 g", (0.5,)),
         ("with a mass of 3 kg", (3.0,)), ("5 kg load", (5.0,)), ("Charge = 4 kg", (4.0,)),
         ("payload 0 kg, later 5 kg", (0.0, 5.0)), ("max. payload 10 kg", ()), ("weighs 5 kg", ()),
         ("Traglast 16 kg", ()), ("load cell 20 kg", ()), ("payload unknown", ()),
-        ("Robot UR10 payload 10 kg", (10.0,)), ("Sensor: Leica, payload 5 kg", (5.0,)),
+        ("Robot UR10 payload 10 kg", ()), ("Sensor: Leica, payload 5 kg", (5.0,)),
         ("robot mass 33 kg", ()), ("mass of the arm: 33 kg", ()), ("loaded", ()),
+        ("payload 5 kg on tool0", (5.0,)), ("Leica AT960, payload 5 kg", (5.0,)),
     ],
 )  # fmt: skip
 def test_masses_of_comments(text: str, masses: tuple[float, ...]) -> None:
@@ -97,7 +161,7 @@ def test_names_of_files_say_the_mass(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("mark", ["%", "#", "//"])
 def test_a_comment_above_the_table_says_it(tmp_path: Path, mark: str) -> None:
-    found = brought(written(tmp_path, "a.csv", f"{mark} UR10 payload 10 kg"))
+    found = brought(written(tmp_path, "a.csv", f"{mark} payload 10 kg"))
     assert hung(found) == [10.0]
     assert any("a line above the table" in s and "10 kg (a.csv)" in s for s in found.said)
     assert not any("payload 10 kg" in item for item in found.draft.unused)
@@ -158,6 +222,18 @@ def test_displacements_of_a_file_are_of_its_mass(tmp_path: Path) -> None:
     found = brought(path)
     assert found.mode == "displacements"
     assert dict(found.columns)["fz[N]"][0] == repr(-9.80665 * 5.0)
+
+
+def test_the_mass_in_words_is_that_of_the_rows_under_load(tmp_path: Path) -> None:
+    found = brought(written(tmp_path, "loaded_5kg.csv", sunk=1.0),
+                    before=written(tmp_path, "unloaded.csv"))  # fmt: skip
+    assert any("all rows of a file: 5 kg (loaded_5kg.csv)" in s for s in found.said)
+
+
+def test_a_decimal_comma_is_said_back_with_a_point(tmp_path: Path) -> None:
+    mass = mass_told("0,5 kg", "--payload")
+    found = brought(written(tmp_path, "a.csv"), payloads={"": mass})
+    assert any("as told: 0.5 kg (a.csv)" in s for s in found.said)
 
 
 def test_masses_that_are_told(tmp_path: Path) -> None:
