@@ -138,7 +138,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "measurements/importers/stations.py", *tests("measurements/importers", "moved_or_bent"),
         sag_taken_for_a_tracker_that_moved=("sag = 0.0 if well else SAGS * arm_length(robot)", "sag = 0.0"),
-        same_poses_read_again_for_nothing=("return len(set().union(*at.values())) < sum(map(len, at.values()))", "return False"),
+        same_poses_read_again_for_nothing=("any(len(own & others) >= TOLD for other, others in at.items() if other != name)", "False"),
         every_file_its_own_frame=("if out[other] == other and apart <= sag:", "if False:"),
     ),
     *of(
