@@ -13,7 +13,7 @@ from sk120stiff.measurements.placing import Placing
 from sk120stiff.measurements.placing_distances import EACH
 from sk120stiff.robot.anatomy import arm_length
 
-ASTRAY = 5.0  # times what the rigid arm leaves: of loads it may sag more, of a sound fit never
+ASTRAY = 5.0  # times what the rigid arm leaves, placed under the lightest load
 LARGEST = 0.03  # of the reach of the arm, which the fitted model of the right arm does not leave
 
 
@@ -69,7 +69,8 @@ def refuse_a_wrong_end(found: Fit, placed: Placing, readings: Measurements) -> N
     """
     lengths = row_lengths(of_poses(found), found.x)
     left = float(np.sqrt(np.mean(lengths**2))) if len(lengths) else 0.0
-    if left > ASTRAY * max(placed.rms, START["position"]):
+    reach = arm_length(found.model.robot)
+    if left > max(ASTRAY * max(placed.rms, START["position"]), LARGEST * reach):
         raise Refusal(
             f"the fit went astray: it leaves {1e3 * left:.3g} mm, where the rigid arm, placed "
             f"alone, leaves {1e3 * placed.rms:.3g} mm",
