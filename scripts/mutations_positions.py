@@ -157,12 +157,10 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "measurements/importers/masses_in_words.py", *tests("measurements/importers", "hung_masses"),
-        a_capacity_taken_for_a_payload=("            return Words(left=((text, why),))", "            pass"),
-    ),
-    *of(
-        "measurements/importers/masses_not_hung.py", *tests("measurements/importers", "hung_masses"),
-        what_a_robot_bears_taken_for_a_load=("return TYPE if robots and not", "return TYPE if False and not"),
-        a_load_that_is_denied=("    if denied(before):\n        return DENIED\n    off", "    off"),
+        a_capacity_taken_for_a_payload=("if len(tokens) == 1 and _STATED.fullmatch", "if len(tokens) == 1 or _STATED.fullmatch"),
+        what_a_robot_bears_taken_for_a_load=("elif not called and len(_alike(before, beside)) < 2:", "elif False:"),
+        a_load_that_is_denied=("if _DENYING.search(stem):", "if False:"),
+        half_of_a_mass=("elif _PART.search(before) and not", "elif False and not"),
     ),
     *of(
         "measurements/importers/lost_readings.py", *tests("measurements/importers", "lost_readings"),

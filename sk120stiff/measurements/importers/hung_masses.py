@@ -12,6 +12,7 @@ from sk120stiff.errors import InputError, listed, meant
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.load_pairs import LOADS
 from sk120stiff.measurements.importers.masses_in_words import (
+    all_masses,
     forces_of_name,
     masses_of_comment,
     masses_of_name,
@@ -26,14 +27,13 @@ SHOWN = 4  # masses or files that are told one by one
 Place = tuple[str, str]  # where a mass stands, and the words there
 
 
-def with_mass(sheet: Sheet, told: Told, robot: str = "", beside: Sequence[str] = ()) -> Sheet:
+def with_mass(sheet: Sheet, told: Told, beside: Sequence[str] = ()) -> Sheet:
     """The sheet with a column ``payload`` in kg, where no column holds a load and one mass is told,
     or said by the name of the file or by a line above the table.
 
     Args:
         sheet: The readings of one file.
         told: With `Told.payloads`, which goes before what the file says.
-        robot: The robot's name; a mass that stands there is the robot's own.
         beside: Names of the files of the campaign, without endings.
 
     Raises:
@@ -50,7 +50,7 @@ def with_mass(sheet: Sheet, told: Told, robot: str = "", beside: Sequence[str] =
         return _with_column(sheet, given, OPTION)
     if columns or told.wrench is not None:
         return sheet
-    by_name = masses_of_name(sheet.path.stem, robot, beside)
+    by_name = masses_of_name(sheet.path.stem, beside)
     lines = [(n, text, masses_of_comment(text)) for n, text in sheet.remarks]
     lines = [line for line in lines if line[2].masses]
     said: dict[float, list[Place]] = {}
@@ -83,9 +83,7 @@ def with_masses_of_all(sheets: Sequence[Sheet]) -> list[Sheet]:
         return list(sheets)
     out = [
         _with_column(sheet, 0.0, FILE_NAME)
-        if not _of_loads(sheet)
-        and says_without(sheet.path.stem)
-        and not masses_of_name(sheet.path.stem).left
+        if not _of_loads(sheet) and says_without(sheet.path.stem)
         else sheet
         for sheet in sheets
     ]
@@ -166,11 +164,12 @@ def _left(sheets: Sequence[Sheet]) -> list[tuple[str, str, str]]:
         if own.stated == OPTION if own else _of_loads(sheet):
             continue
         name = sheet.path.name
-        for words, why in masses_of_name(sheet.path.stem, beside=beside).left:
+        for words, why in masses_of_name(sheet.path.stem, beside).left:
             found.setdefault((words, why), (words, f"the name {name}", why))
         for number, text in sheet.remarks:
             for words, why in masses_of_comment(text).left:
-                found.setdefault((words, why), (words, f"line {number} of {name}", why))
+                if not (own and all_masses(text) == {float(own.cells[0])}):  # it says the same
+                    found.setdefault((words, why), (words, f"line {number} of {name}", why))
     return list(found.values())
 
 

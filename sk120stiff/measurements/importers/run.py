@@ -173,8 +173,7 @@ def import_readings(
                 Path(one), robot.actuated, "points", tuple(columns) if columns else None,
                 of_sheets.get(""), topic, marker,
             ),
-            formats, format_name, files, of_sheets, told, robot.name,
-            [Path(each).stem for each in paths],
+            formats, format_name, files, of_sheets, told, [Path(each).stem for each in paths],
         )
         for one in paths
     ]  # fmt: skip
@@ -272,7 +271,6 @@ def _sheet(
     files: Mapping[str, Path | None],
     sheets: Mapping[str, str],
     told: Told,
-    robot: str,
     beside: Sequence[str],
 ) -> Sheet:
     """The readings of a file, with those of the files beside it: before, joints, loads."""
@@ -295,7 +293,7 @@ def _sheet(
         used += [free.given.sheet] if same and free.given and free.given.sheet else []
         sheet = with_before(sheet, without_lost(formats.chosen(free, name)[0].read(free)), told)
     if files["loads"] is None or told.payloads:
-        sheet = with_mass(sheet, told, robot, beside)
+        sheet = with_mass(sheet, told, beside)
     roles: tuple[Role, Role] = ("joints", "loads")
     for role in roles:
         path = files[role]
