@@ -96,7 +96,7 @@ def d_optimal(
     """
     wanted = that_count(model, parameters)
     refuse_count(pool.pose, count, loads)
-    span = np.array([model.parameters[k].spec.plausible for k in model.free])
+    span = plausible_sizes(model)
     noise = sigma * DISPLACEMENT
     gains = information(model, pool, span) / noise**2
     before = np.eye(len(span))
@@ -155,6 +155,11 @@ def best_design(
     std = np.sqrt(np.diag(np.linalg.inv(total)))[interest] * span[interest]
     reached = float(worth(total[None])[0])
     return Design(tuple(rows), tuple(wanted), std, reached, gains, known, interest)
+
+
+def plausible_sizes(model: Model) -> Array:
+    """(P,) beyond which values of the free parameters are implausible, internal."""
+    return np.array([model.parameters[k].spec.plausible for k in model.free])
 
 
 def information(model: Model, pool: Pool, span: Array) -> Array:

@@ -94,7 +94,7 @@ class PlanOfPositions(Plan):
         total = design.known + design.gains[list(design.rows)].sum(axis=0)
         everywhere = self.candidates.information[0].sum(axis=0)
         share = np.trace(np.linalg.solve(total, everywhere)) / len(problem.rows)
-        few = len(problem.model.free) > size_of(self.candidates, len(design.rows))
+        few = len(problem.model.free) > self.candidates.numbers(len(design.rows))
         return np.nan if few else self.standard * float(np.sqrt(share))
 
 
@@ -174,24 +174,20 @@ def plan_positions(
     rivals = None if between is None else pool.rivalry(*between)
     wanted, untold = _wanted(pool, parameters) if rivals is None else ((), {})
     gains, before = pool.information
-    group = pool.pool.pose
-    if places is not None and count is None:
-        at = [places.place_of(each) for each in pool.pool.load_cases.a]
-        group = np.unique(at, return_inverse=True)[1].reshape(-1)
-    poses = int(group.max()) + 1 if count is None else count
 
     def choose(banned: Sequence[Array]) -> tuple[Chosen, Measurements]:
         gone = [same_pose(pool.pool.load_cases.a, each) for each in banned]
         left = np.flatnonzero(~np.any(gone, axis=0)) if gone else np.arange(pool.pool.count)
-        own = np.unique(group[left], return_inverse=True)[1].reshape(-1)
-        size = min(poses, int(own.max()) + 1) if count is None else poses
-        _refuse_count(own, size, loads)
-        rest = Pool(pool.pool.load_cases.rows(left))
+        if places is not None and count is None:
+            left = left[places.one_each(pool.pool.rows(left), gains[left])]
+        rest = pool.pool.rows(left)
+        size = count or len(np.unique(rest.pose))
+        _refuse_count(rest.pose, size, loads)
         if rivals is not None and between is not None:
-            chosen = _between(rivals.of_candidates(left), rest, own, (size, loads), between)
+            chosen = _between(rivals.of_candidates(left), rest, (size, loads), between)
         else:
             design = best_design(
-                pool.problem.model, wanted, gains[left], before, pool.span, size, own, loads
+                pool.problem.model, wanted, gains[left], before, pool.span, size, rest.pose, loads
             )
             names = (*wanted, *untold)
             chosen = Chosen(
@@ -208,13 +204,6 @@ def plan_positions(
             taken = replace(taken, absolute=replace(taken.absolute, channels=channels))
         return chosen, taken if places is None else places.named(taken)
 
-    numbers = size_of(pool, poses * loads)
-    few: tuple[str, ...] = ()
-    if numbers < len(pool.problem.model.free):
-        few = (
-            f"{numbers} numbers cannot tell {len(pool.problem.model.free)} values: what a fit of "
-            "these poses alone leaves open rests on what is plausible. Plan more poses.",
-        )
     named = places is not None or used is not None
     chosen, taken, way, left_out = drivable(
         choose, robot, within, drive=drive, named=named, seed=seed
@@ -223,19 +212,21 @@ def plan_positions(
     if len(idle):
         masses = ", ".join(f"{mass:g} kg" for mass in idle)
         remarks = (*remarks, f"No reading hangs {masses} on the tool: the others tell more.")
+    numbers, values = pool.numbers(len(chosen.rows)), len(pool.problem.model.free)
+    if numbers < values:
+        remarks = (
+            f"{numbers} numbers cannot tell {values} values: what a fit of them leaves open rests "
+            "on what is plausible. Plan more poses.",
+            *remarks,
+        )
     return PlanOfPositions.of(
         taken, model=pool.problem.model, chosen=chosen, standard=pool.standard, cell=within,
         known=known, seed=seed, way=way, left_out=left_out, candidates=pool,
-        remarks=(*few, *pool.remarks, *remarks),
+        remarks=(*remarks, *pool.remarks),
     )  # fmt: skip
 
 
 SOURCE = "poses and payloads chosen by 'sk120stiff plan'"
-
-
-def size_of(pool: PositionsPool, candidates: int) -> int:
-    """Numbers that are read at so many candidates."""
-    return candidates * len(pool.problem.rows) // pool.pool.count
 
 
 def _refuse_count(pose: Index, count: int, loads: int) -> None:
@@ -245,7 +236,7 @@ def _refuse_count(pose: Index, count: int, loads: int) -> None:
         raise InputError(
             f"{loads} payloads at each pose, and {own.max()} "
             f"{'is' if own.max() == 1 else 'are'} stated",
-            remedy="State as many masses to choose from (--payload '0,5,10 kg').",
+            remedy="State as many masses to choose from (--payload '0; 5; 10 kg').",
         )
     if count > len(own):
         raise InputError(
@@ -256,14 +247,10 @@ def _refuse_count(pose: Index, count: int, loads: int) -> None:
 
 
 def _between(
-    rivals: Rivalry,
-    pool: Pool,
-    pose: Index,
-    size: tuple[int, int],
-    between: tuple[Effect, Effect],
+    rivals: Rivalry, pool: Pool, size: tuple[int, int], between: tuple[Effect, Effect]
 ) -> Chosen:
     """The candidates that tell two effects apart."""
-    choice = rivals.best(size[0], pose, size[1])
+    choice = rivals.best(size[0], pool.pose, size[1])
 
     def gain_over(rows: Sequence[int]) -> float:
         return choice.after / max(rivals.evidence_of(rows), 1e-12)

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model
-from sk120stiff.plan.design import determinant_worth, information
+from sk120stiff.plan.design import determinant_worth
 from sk120stiff.plan.pool import Pool
 
 
@@ -27,12 +26,16 @@ class Places:
     names: tuple[str, ...]
     remarks: tuple[str, ...]
 
-    def one_each(self, model: Model, pool: Pool) -> Pool:
-        """Of a pool's readings those of one pose for each place: by whose loads most is learnt."""
-        span = np.array([model.parameters[k].spec.plausible for k in model.free])
-        gains = information(model, pool, span)
-        gains /= np.trace(gains, axis1=1, axis2=2).mean() or 1.0
-        worth, total = determinant_worth(np.arange(len(span))), 1e-6 * np.eye(len(span))
+    def one_each(self, pool: Pool, gains: Array) -> Index:
+        """Of a pool's readings those of one pose for each place: by whose loads most is learnt.
+
+        Args:
+            pool: M candidates at these poses.
+            gains: (M, P, P) information of each on what is to be known.
+        """
+        size = gains.shape[-1]
+        gains = gains / (np.trace(gains, axis1=1, axis2=2).mean() or 1.0)
+        worth, total = determinant_worth(np.arange(size)), 1e-6 * np.eye(size)
         standing: dict[str, dict[int, list[int]]] = {}
         for row, (pose, a) in enumerate(zip(pool.pose, pool.load_cases.a, strict=True)):
             standing.setdefault(self.place_of(a), {}).setdefault(int(pose), []).append(row)
@@ -43,7 +46,7 @@ class Places:
             best = int(np.argmax(worth(total + sums)))
             total = total + sums[best]
             kept += rows[best]
-        return Pool(pool.load_cases.rows(np.array(sorted(kept), dtype=np.intp)), pool.remarks)
+        return np.array(sorted(kept), dtype=np.intp)
 
     def lost(self, pool: Pool) -> tuple[str, ...]:
         """Places of which a pool has no pose any more."""

@@ -19,6 +19,7 @@ from sk120stiff.measurements.noise_statement import NoiseStatement
 from sk120stiff.model import Model, Parameter
 from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.choosing import Chosen, precise, telling
+from sk120stiff.plan.design import information, plausible_sizes
 from sk120stiff.plan.places import Places
 from sk120stiff.plan.pool import Pool, feasible_pool
 from sk120stiff.plan.route import NoWay, Route, in_order
@@ -29,7 +30,7 @@ POSES = 400  # to choose from
 DIRECTIONS = 12  # of the load at each of them
 USUAL = 1e-5  # m; standard uncertainty of a reading of which nobody said it
 LITTLE = 0.5  # of a variance: readings that leave more of it tell less than was plausible before
-MOST_ROUNDS = 3  # of other poses in the place of those to which no way is found
+OTHERS = 2  # times that other poses are chosen in the place of those to which no way is found
 MOST_LOST = 1.0 / 3.0  # of the poses of a plan: where more are cut off, that is the answer
 
 
@@ -195,7 +196,8 @@ def plan(
         for a in banned:
             choice = choice.without(a)
         if places is not None and count is None:
-            choice = places.one_each(model, choice)
+            gains = information(model, choice, plausible_sizes(model))
+            choice = choice.rows(places.one_each(choice, gains))
             poses = len(np.unique(choice.pose))
         size = poses or 0, loads
         if between is None:
@@ -243,16 +245,18 @@ def drivable(
     Raises:
         Refusal: No free way leads to several of them.
     """
-    banned: list[Array] = []
-    for last in (*[False] * (MOST_ROUNDS - 1), True):
+    chosen, found = choose([])
+    if not drive:
+        return chosen, found, None, 0
+    ordered, way, lost = _reached(found, robot, cell, seed)
+    banned = [*lost]
+    for _ in range(OTHERS):
+        if not lost:
+            break
         chosen, found = choose(banned)
-        if not drive:
-            return chosen, found, None, 0
         ordered, way, lost = _reached(found, robot, cell, seed)
         banned += lost
-        if not lost or last:
-            break
-    if lost:
+    if lost:  # there are fewer then
         chosen = chosen.without(lost)
     if not named:
         ordered = replace(ordered, pose=numbered(ordered.pose))
@@ -310,7 +314,7 @@ def promised(
         sigma: Standard uncertainty of one reading per axis [m].
         known: Readings that were taken already.
     """
-    span = np.array([model.parameters[k].spec.plausible for k in model.free])
+    span = plausible_sizes(model)
     total = np.eye(len(span))
     for rows in (plan, known):
         if rows is None:

@@ -49,6 +49,10 @@ class Pool:
         """The candidates that do not stand at a pose (n,)."""
         return Pool(self.load_cases.rows(~same_pose(self.load_cases.a, a)), self.remarks)
 
+    def rows(self, index: Index) -> Pool:
+        """Some of the candidates."""
+        return Pool(self.load_cases.rows(index), self.remarks)
+
     @cached_property
     def pose(self) -> Index:
         """(M,) index of each candidate's pose."""

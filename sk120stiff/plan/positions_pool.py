@@ -32,12 +32,11 @@ from sk120stiff.measurements.poses import labels_to_come
 from sk120stiff.measurements.rays import anywhere
 from sk120stiff.model import Model
 from sk120stiff.plan.discriminate import Rivalry, over_ranges, with_both
-from sk120stiff.plan.planned import LITTLE
+from sk120stiff.plan.planned import LITTLE, USUAL
 from sk120stiff.plan.pool import Pool
 from sk120stiff.robot import Robot
 
 PLACING = (Mounting, Viewpoint, ToolOffset, MarkerShift)  # of the rig, not of the arm
-USUAL = 1e-5  # m; standard uncertainty of a number of which nobody said it
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +77,14 @@ class PositionsPool:
         """Standard uncertainty of one number, rms over lengths where there are any [m or rad]."""
         own = self.problem.sigma_of_channels[self.problem.counted]
         return float(np.sqrt(np.mean(own**2)))
+
+    def numbers(self, count: int) -> int:
+        """How many are read at so many candidates, those of readings taken already among them."""
+        channels = (
+            None if self.known is None or self.known.absolute is None else self.known.absolute
+        )
+        before = 0 if channels is None else len(channels.channels.rows)
+        return before + count * len(self.problem.rows) // self.pool.count
 
     def rows_of(self, chosen: Index) -> Index:
         """Readings of some candidates."""

@@ -135,6 +135,8 @@ def test_readings_there_are_give_markers_payloads_and_labels(
     assert made.standard == pytest.approx(SIGMA)
     assert made.poses[0] == "next_1" and np.isfinite(made.cell.floor)
     alone = sk.plan_positions(model, 5, payloads=[0, 15], point=AT, sigma=SIGMA, candidates=40)
+    assert not any("numbers cannot tell" in said for said in made.remarks)  # with those before
+    assert np.isfinite(made.foretold) and any("numbers cannot" in s for s in alone.remarks)
     mine, bare = springs_of(made), springs_of(alone)
     assert all(mine[name] < bare.get(name, np.inf) for name in mine)
     file = sk.write_measurements(made, tmp_path / "next.csv")
@@ -159,6 +161,9 @@ def test_they_stand_at_places_and_are_driven(model: sk.Model) -> None:
     places = Places(a, ("A", "A", "B", "B", "C", "C"), ())
     made = sk.plan_positions(model, places=places, point=AT)
     assert sorted(made.pose) == ["A", "B", "C"]
+    paired = sk.plan_positions(model, places=places, loads=2, payloads=[0, 9], point=AT)
+    postures = {name: paired.joints[[p == name for p in paired.pose]] for name in "ABC"}
+    assert all(len(a) == 2 and np.array_equal(*a) for a in postures.values())  # one at each
     driven = sk.plan_positions(model, 5, point=AT, candidates=20, drive=True, cell=Cell(floor=-2.0))
     assert driven.way is not None and driven.poses == ("p1", "p2", "p3", "p4", "p5")
 

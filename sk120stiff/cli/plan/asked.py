@@ -56,7 +56,7 @@ def hung_on(
         )
     if not absolute and (masses or point is not None):
         raise InputError(
-            "a payload stands by positions",
+            "nothing is hung on the tool where displacements by a pull are planned",
             where="--payload" if masses else "--payload-point",
             remedy="Add --positions to plan readings of where a marker stands; loads that pull the "
             "tool aside have --force.",
@@ -89,18 +89,17 @@ def _kilograms(text: str) -> list[float]:
     words = [word.strip() for word in re.split(r";|,\s", text)]
     if len(words) == 1 and "," in text:
         words = [word.strip() for word in text.split(",")]
-    unit = re.search(r"[a-z]*$", words[-1], re.IGNORECASE)
+    unit = words[-1].lstrip("0123456789. ")
     found = []
     for word in words:
-        number = re.fullmatch(r"\d+(?:\.\d+)?", word) and unit is not None
         if "," in word or re.match(r"0\d", word):  # 0,05 kg; and 0,5 kg beside others
             raise InputError(
                 f"a comma in {text.strip()!r} may be a decimal one, or part two masses",
                 where="--payload",
                 remedy="Write decimals with a point, '0.5 kg'; several masses as '0; 0.5 kg'.",
             )
-        mass = f"{word} {unit[0]}" if number and unit is not None else word
-        found.append(mass_told(mass, "--payload", LIKE))
+        bare = re.fullmatch(r"\d+(?:\.\d+)?", word)
+        found.append(mass_told(f"{word} {unit}" if bare else word, "--payload", LIKE))
     return found
 
 

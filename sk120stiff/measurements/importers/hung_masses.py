@@ -168,7 +168,7 @@ def _left(sheets: Sequence[Sheet]) -> list[tuple[str, str, str]]:
             found.setdefault((words, why), (words, f"the name {name}", why))
         for number, text in sheet.remarks:
             for words, why in masses_of_comment(text).left:
-                if not (own and all_masses(text) == {float(own.cells[0])}):  # it says the same
+                if not (own and all_masses(text) == {max(map(float, own.cells))}):  # the same
                     found.setdefault((words, why), (words, f"line {number} of {name}", why))
     return list(found.values())
 
