@@ -17,7 +17,7 @@ from scipy.optimize import least_squares
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.registration import kabsch
+from sk120stiff.measurements.laying import kabsch
 from sk120stiff.robot import Robot
 
 EACH = 6  # distances to a fixed point from which its place is found, with some to spare

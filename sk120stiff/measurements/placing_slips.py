@@ -227,11 +227,14 @@ def signs_and_turns(cloud: Cloud, *, floor: bool = False) -> Convention:
             own[0][k, k], own[1][k] = sign, turn * np.pi / 2
             if other:
                 own[0][k, k - 1] = other
-            rms = _left(cloud, *own)
-            wider.append((float(f"{rms:.3g}"), oddness(cloud, *own), own))
-        wider.sort(key=lambda item: item[:2])
-        ways = [own for *_, own in (wider if k < WHOLE else wider[:KEPT])]
-    return Convention(_left(cloud, *ways[0]), *ways[0])
+            wider.append(own)
+        ranked = [
+            (float(f"{rms:.3g}"), oddness(cloud, *own), own)
+            for rms, own in zip(_left(cloud, wider), wider, strict=True)
+        ]
+        ranked.sort(key=lambda item: item[:2])
+        ways = [own for *_, own in (ranked if k < WHOLE else ranked[:KEPT])]
+    return Convention(_left(cloud, ways[:1])[0], *ways[0])
 
 
 def to_the_floor(cloud: Cloud) -> Convention:
@@ -257,31 +260,33 @@ def one_zero(cloud: Cloud) -> Convention:
     """The best zero of one joint, by whatever angle it is off, where all else is as it stands."""
     n = cloud.a.shape[1]
 
-    def left(k: int, angle: float) -> float:
-        return _left(cloud, np.eye(n), angle * np.eye(n)[k])
+    def left(k: int, *angles: float) -> list[float]:
+        return _left(cloud, [(np.eye(n), angle * np.eye(n)[k]) for angle in angles])
 
     best, joint, zero = np.inf, 0, 0.0
     for k in np.flatnonzero(~np.array(cloud.robot.prismatic)).tolist():
-        tried = [left(k, angle) for angle in ZEROS]
+        tried = left(k, *ZEROS)
         near = int(np.argmin(tried))
         if tried[near] < best:
             best, joint, zero = tried[near], k, float(ZEROS[near])
     step = float(ZEROS[1] - ZEROS[0])
     found = minimize_scalar(
-        lambda angle: left(joint, angle), bounds=(zero - step, zero + step), method="bounded",
+        lambda angle: left(joint, angle)[0], bounds=(zero - step, zero + step), method="bounded",
         options={"xatol": FINE},
     )  # fmt: skip
     rms, zero = float(found.fun), float(found.x)
     quarter = np.pi / 2 * round(zero / (np.pi / 2))
     if abs(zero - quarter) < SAGGED:
-        rms, zero = left(joint, quarter), quarter
+        (rms,), zero = left(joint, quarter), quarter
     return Convention(rms, np.eye(n), zero * np.eye(n)[joint])
 
 
-def _left(cloud: Cloud, share: Array, zero: Array) -> float:
-    """What is left with joints that are shares of the columns, and zeros of their own [m]."""
-    moved = replace(cloud, a=cloud.a @ share.T + zero)
-    return moved.placed(fit_marker=True, until=NEARLY)[0].rms
+def _left(cloud: Cloud, ways: Sequence[tuple[Array, Array]]) -> list[float]:
+    """What is left with joints that are shares of the columns, and zeros of their own [m], by each
+    of several ways.
+    """
+    joints = np.stack([cloud.a @ share.T + zero for share, zero in ways])
+    return [float(rms) for rms in cloud.left_with(joints, until=NEARLY)]
 
 
 def oddness(cloud: Cloud, share: Array, zero: Array) -> tuple[int, int]:
@@ -306,9 +311,9 @@ def with_sums(cloud: Cloud) -> Convention:
     n = cloud.a.shape[1]
     share, zero = np.eye(n), np.zeros(n)
     turning = ~np.array(cloud.robot.prismatic)
-    best = _left(cloud, share, zero)
+    (best,) = _left(cloud, [(share, zero)])
     for _ in range(n):
-        tried: list[tuple[float, int, Array, float]] = []
+        tried: list[tuple[Array, Array]] = []
         for k in range(n):
             ways = [(sign * share[k], turn) for sign in (1.0, -1.0) for turn in range(4)]
             if not turning[k]:
@@ -322,11 +327,12 @@ def with_sums(cloud: Cloud) -> Convention:
             for own, turn in ways:
                 both = share.copy(), zero.copy()
                 both[0][k], both[1][k] = own, turn * np.pi / 2
-                tried.append((_left(cloud, *both), k, own, turn * np.pi / 2))
-        nearest = min(tried, key=lambda item: item[0])
-        if nearest[0] > BETTERED * best:
+                tried.append(both)
+        left = _left(cloud, tried)
+        nearest = int(np.argmin(left))
+        if left[nearest] > BETTERED * best:
             break
-        best, k, share[nearest[1]], zero[nearest[1]] = nearest
+        best, (share, zero) = left[nearest], tried[nearest]
     return Convention(best, share, zero)
 
 

@@ -6,14 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
-from sk120stiff.robot.rotations import crossed
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.measurements.laying import Clouds, Laid, lay
 
 _TOLD = 1e-6  # the least singular value, of columns of length one, that determines a frame
-
-MARKER_POSES = 5  # from here on the marker's place is fitted too
-_STEPS = 100  # of Gauss and Newton
-_STILL = 1e-10  # m; a marker that moves by less is found
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,63 +93,36 @@ def register(
     station = np.zeros(count, dtype=np.intp) if station is None else station
     if count < 3 or np.bincount(station).min() < 3:
         return None
-    stated = flange + np.einsum("pij,pj->pi", rotation, np.broadcast_to(point, flange.shape))
     group = np.zeros(count, dtype=np.intp) if group is None else group
-    marker = np.zeros((int(group.max()) + 1, 3))
-    here = np.eye(int(station.max()) + 1)[station]
-    frames = 6 * here.shape[1]
-    fit_marker = fit_marker and count >= MARKER_POSES + len(marker) - 1 + 2 * (here.shape[1] - 1)
-    turns, shifts = _each_laid(stated, measured, station)
+    clouds = Clouds(measured, flange[None], rotation[None], point, group, station)
+    kept = np.ones((1, count), dtype=bool)
+    found = lay(clouds, kept, fit_marker=fit_marker, until=until)
+    return registration_of(clouds, found, kept[0])
 
-    def columns() -> Array:
-        """(3P, 6 S + 3 G) derivative by the turns and shifts of S stations and the G markers."""
-        turn = turns[station]
-        seen = np.einsum("pij,pj->pi", turn, reached())
-        frame = np.concatenate([-crossed(seen), np.tile(np.eye(3), (count, 1, 1))], axis=2)
-        own = np.einsum("pij,pg->pigj", turn @ rotation, np.eye(len(marker))[group])
-        parts = [np.einsum("pij,ps->pisj", frame, here), own]
-        return np.concatenate([part.reshape(3 * count, -1) for part in parts], axis=1)
 
-    def reached() -> Array:
-        return np.asarray(stated + np.einsum("pij,pj->pi", rotation, marker[group]))
-
-    for _ in range(_STEPS if fit_marker else 0):
-        left = measured - _moved(turns, shifts, reached(), station)
-        step = np.linalg.lstsq(columns(), left.ravel(), rcond=1e-9)[0]
-        marker = marker + step[frames:].reshape(-1, 3)
-        # The best turns and shifts for that marker: no step of theirs can then lead astray.
-        turns, shifts = _each_laid(reached(), measured, station)
-        if np.abs(step[frames:]).max() < max(_STILL, until * float(np.sqrt(np.mean(left**2)))):
-            break
-    left = measured - _moved(turns, shifts, reached(), station)
-    distance = np.linalg.norm(left, axis=1)
-    spare = 3 * count - frames - (marker.size if fit_marker else 0)
-    rms = float(np.sqrt((distance**2).sum() * 3.0 / spare))
-    worst = int(np.argmax(distance))
+def registration_of(clouds: Clouds, found: Laid, kept: Mask) -> Registration:
+    """All that the placing of one robot tells by the positions (P,) that were kept."""
+    (marker,), (rms,), distance = found.marker, found.rms, found.distance[0, kept]
+    worst, point = int(np.argmax(distance)), clouds.point
+    fitted, frames = bool(found.fitted[0]), 6 * found.turns.shape[1]
+    columns = clouds.columns(found.turns, found.marker)[0, np.repeat(kept, 3)]
     return Registration(
-        rms,
+        float(rms),
         float(distance[worst]),
         worst,
-        count,
+        len(distance),
         marker[0] if point.ndim == 2 else point + marker[0],
-        fit_marker,
-        turns,
-        shifts,
+        fitted,
+        found.turns[0],
+        found.shifts[0],
         distance,
-        _covariances(columns()[:, : None if fit_marker else frames], frames, rms**2 / 3.0),
+        _covariances(columns[:, : None if fitted else frames], frames, float(rms) ** 2 / 3.0),
         marker - marker[0],
     )
 
 
 def _moved(turns: Array, shifts: Array, at: Array, station: Index) -> Array:
     return np.asarray(np.einsum("pij,pj->pi", turns[station], at) + shifts[station])
-
-
-def _each_laid(reached: Array, measured: Array, station: Index) -> tuple[Array, Array]:
-    """(S, 3, 3) and (S, 3): the clouds of every station laid onto one another."""
-    rows = [station == k for k in range(int(station.max()) + 1)]
-    laid = [kabsch(reached[own], measured[own]) for own in rows]
-    return np.stack([turn for turn, _ in laid]), np.stack([shift for _, shift in laid])
 
 
 def _covariances(columns: Array, frames: int, variance: float) -> Array:
@@ -164,11 +133,3 @@ def _covariances(columns: Array, frames: int, variance: float) -> Array:
         return np.full((frames // 6, 6, 6), np.inf)
     root = ((vt.T / values)[:frames] / size[:frames, None]).reshape(-1, 6, len(size))
     return np.asarray(variance * root @ root.swapaxes(1, 2))
-
-
-def kabsch(reached: Array, measured: Array) -> tuple[Array, Array]:
-    """Turn (3, 3) and shift (3,) that bring one cloud (P, 3) nearest to the other."""
-    middle, goal = reached.mean(axis=0), measured.mean(axis=0)
-    u, _, vt = np.linalg.svd((measured - goal).T @ (reached - middle))
-    turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt)) or 1.0]) @ vt
-    return turn, goal - turn @ middle

@@ -67,13 +67,13 @@ def explained(path: Path) -> Explained:
 
 
 @pytest.mark.parametrize("name", [*ARMS, LOOPED])
-@pytest.mark.parametrize("frame", ["base", "tool"])
-def test_derivatives_against_central_differences(name: str, frame: str) -> None:
-    """Of displacement and turn, by every smooth effect of the catalogue."""
+def test_derivatives_against_central_differences(name: str) -> None:
+    """Of displacement and turn in axes of base and of tool, by every smooth effect there is."""
     robot = arm(name)
     load_cases = load_cases_of(robot, seed=4)
-    if frame == "tool":
-        load_cases = replace(load_cases, reading_axes=load_cases.rotation)
+    axes = load_cases.reading_axes.copy()
+    axes[::2] = load_cases.rotation[::2]
+    load_cases = replace(load_cases, reading_axes=axes)
     model, values = with_everything(robot, seed=5)
     found = move_by_load(model, load_cases, values, derivative=True)
     for k in range(len(values)):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sk120stiff.measurements.registration import kabsch, register
+from sk120stiff.measurements.laying import kabsch
+from sk120stiff.measurements.registration import register
 
 TURN = Rotation.from_rotvec([0.4, -1.1, 2.0]).as_matrix()
 SHIFT = np.array([5.0, -3.0, 1.2])
