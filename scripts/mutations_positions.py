@@ -97,11 +97,14 @@ OF_POSITIONS: tuple[Fault, ...] = (
         loads_misread_by_sensors_alone=("    return max(laws, key=takes_off)", "    return laws[0]"),
     ),
     *of(
+        "measurements/laying.py", *tests("measurements", "registration"),
+        mirrored_frames=("np.linalg.det(u @ vt) < 0.0", "np.linalg.det(u @ vt) < -9.0"),
+        residual_not_divided_by_its_freedom=("spare = 3 * count - 6 * stations - 3 * markers * fitted", "spare = 3 * count"),
+        stations_laid_as_one=("weight = kept[..., None] * clouds.of_station", "weight = kept[..., None] * np.ones_like(clouds.of_station)"),
+    ),
+    *of(
         "measurements/registration.py", *tests("measurements", "registration"),
-        mirrored_frames=("np.sign(np.linalg.det(u @ vt)) or 1.0", "1.0"),
-        residual_not_divided_by_its_freedom=("spare = 3 * count - frames - (marker.size if fit_marker else 0)", "spare = 3 * count"),
         covariance_of_a_frame_without_its_scale=("(vt.T / values)[:frames] / size[:frames, None]", "(vt.T / values)[:frames]"),
-        stations_laid_as_one=("rows = [station == k for k", "rows = [station >= 0 for k"),
     ),
     *of(
         "measurements/placing_slips.py", *tests("absolute", "rows_apart"),

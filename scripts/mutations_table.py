@@ -350,7 +350,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "measurements/placing_slips.py", *tests("measurements", "conventions"),
-        joints_mended_one_by_one=("wider[:KEPT]", "wider[:1]"),
+        joints_mended_one_by_one=("ranked[:KEPT]", "ranked[:1]"),
         joints_beyond_their_limits=("return beyond, int(", "return 0, int("),
     ),
     *of(
