@@ -27,8 +27,16 @@ OF_POSITIONS: tuple[Fault, ...] = (
         "explain/absolute/choose.py", *POSITIONS,
         confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > SURE and", "gained.share > SHARE and"),
         looking_at_many_for_nothing=("CLEAR + float(np.log(max(len(linear.candidates), 1)))", "CLEAR"),
-        rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
         gain_at_poses_that_were_fitted=("linear.gap(each, linear.noise(each), held_out=True)", "linear.gap(each, linear.noise(each), held_out=False)"),
+    ),
+    *of(
+        "explain/absolute/choose.py", *tests("absolute", "choose"),
+        less_likely_names_kept=("odds[best] > odds[e] + MENTION", "odds[best] > odds[e] + 1e9"),
+        ties_exchanged=("odds[best] > odds[e] + MENTION", "odds[best] > odds[e] - 1e-9"),
+    ),
+    *of(
+        "explain/absolute/standing.py", *POSITIONS,
+        rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
     ),
     *of(
         "explain/absolute/linear.py", *POSITIONS,
@@ -36,6 +44,10 @@ OF_POSITIONS: tuple[Fault, ...] = (
         poses_left_out_in_the_fit=("G = self.whole if without is None else self.whole - self.sums[without]", "G = self.whole"),
         parts_softer_than_rigid=("wrong = (pick >= P) & (x < 0.0)", "wrong = (pick >= P) & (x < -1e99)"),
         noise_smaller_than_stated=("return max(left, together) if self.stated else left", "return left"),
+    ),
+    *of(
+        "arrays.py", *tests("", "arrays"),
+        rounding_taken_for_a_column=("lengths > ROUNDING * lengths", "lengths > 0.0 * lengths"),
     ),
     *of(
         "identify/absolute/gauss_newton.py", *POSITIONS,

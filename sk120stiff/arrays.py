@@ -20,6 +20,8 @@ Integers = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 """Yes or no for each entry of another array."""
 
+ROUNDING = 1e-13  # of the longest column, below which one is rounding
+
 
 def rms(values: Array) -> float:
     """Root mean square of what is finite; NaN where nothing is."""
@@ -31,6 +33,21 @@ def largest(values: Array) -> float:
     """Largest of what is finite; NaN where nothing is."""
     finite = values[np.isfinite(values)]
     return float(finite.max()) if len(finite) else float("nan")
+
+
+def lengths_of(columns: Array) -> Array:
+    """(k,) lengths of columns (..., k); 0 of one that is rounding beside the longest.
+
+    What no reading shows comes out of finite arithmetic as some 1e-16, in no direction at all.
+    """
+    lengths = np.linalg.norm(columns, axis=0)
+    return np.where(lengths > ROUNDING * lengths.max(initial=0.0), lengths, 0.0)
+
+
+def of_length_one(columns: Array) -> Array:
+    """(R, k) the columns that are not zero, each divided by its length."""
+    lengths = lengths_of(columns)
+    return np.asarray(columns[:, lengths > 0.0] / lengths[lengths > 0.0])
 
 
 def on_one_thread(function: Callable[P, T]) -> Callable[P, T]:

@@ -27,7 +27,7 @@ from sk120stiff.explain.answer.words import (
     plain_words,
     set_aside_sentences,
 )
-from sk120stiff.explain.findings import Contender, Finding, likely
+from sk120stiff.explain.findings import Contender, Finding, likely, sentence_in
 from sk120stiff.identify import unseen_reasons, unseen_sentences
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -181,7 +181,8 @@ def findings(answer: Explanation) -> list[str]:
     lines = []
     unseen = unseen_reasons(answer.final) if answer.findings else {}
     for finding in answer.findings:
-        lines.append(f"{finding.effect.sentence()} [{finding.effect.id}] ({_sure(finding)})")
+        said = sentence_in(answer.final.model, finding.effect)
+        lines.append(f"{said} [{finding.effect.id}] ({_sure(finding)})")
         for other in finding.alternatives:
             share = finding.evidence.odds.get(other)
             kind = "always the same" if other in finding.exact else "not told apart here"

@@ -17,7 +17,7 @@ from sk120stiff.explain import Explained
 from sk120stiff.explain.absolute.accounts import HeldOutFile
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
-from sk120stiff.explain.findings import likely
+from sk120stiff.explain.findings import likely, sentence_in
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.model import Model, base_model
@@ -70,8 +70,8 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     hidden = unseen(answer.final)
     for item in answer.findings:
         shown.append(
-            f"{item.effect.sentence()} [{item.effect.id}] ({answer.chance_of(item)}, takes off "
-            f"{100 * item.gain.share:.1f} %)"
+            f"{sentence_in(answer.final.model, item.effect)} [{item.effect.id}] "
+            f"({answer.chance_of(item)}, takes off {100 * item.gain.share:.1f} %)"
         )
         for other in item.alternatives:
             share = likely(answer.probabilities.get(other, 0.0))  # of one class nothing tells it

@@ -51,8 +51,8 @@ class Effect(ABC):
         place: What `where` names, in words (class attribute).
         equation: The law, in symbols that `axes` and the parameters' meanings explain (class
             attribute).
-        says: What happens, in plain words, as a full sentence in which ``{where}`` is the place
-            (class attribute; or `sentence` says it).
+        says: What happens, in words, as a sentence in which ``{where}`` is the place (class
+            attribute; or `sentence` says it).
         axes: The frame in which its parameters are stated (class attribute).
         also: By which names of parameters its other laws are told, and what those mean (class
             attribute).
@@ -141,6 +141,10 @@ class Effect(ABC):
             'The base rocks on its foundation.'
         """
         return self.says.format(where=self.where)
+
+    def told(self, values: Mapping[str, float]) -> str:
+        """`sentence`, where values of the parameters by name say more of it."""
+        return self.sentence()
 
     @property
     def law_prior(self) -> float:
@@ -278,8 +282,7 @@ class Geometric(Effect):
     """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p.
 
     Attributes:
-        of_marker: Where positions are read it moves the marker alone, along the tool's axes: what
-            hangs on the tool stays (class attribute).
+        of_marker: Of positions it moves the marker alone, not what hangs there (class attribute).
     """
 
     of_marker: ClassVar[bool] = False
@@ -329,10 +332,7 @@ class Imposed(Effect):
 
 
 class Weighing(Effect):
-    """The arm's own weight is 1 + Σ_p values[p] times what its URDF states, all links alike.
-
-    What hangs on the tool is no part of the arm.
-    """
+    """The arm's own weight, not a payload's, is 1 + Σ_p values[p] times what its URDF states."""
 
 
 class Misreading(Effect):

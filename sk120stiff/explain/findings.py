@@ -8,10 +8,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sk120stiff.effects import Effect
-from sk120stiff.model import Share
+from sk120stiff.model import Model, Share
 
 ENOUGH = 3.3  # standard deviations from which on readings settle which of two names it is
 NAMED = 0.95  # probability from which on a name stands alone
+
+
+def sentence_in(model: Model, effect: Effect) -> str:
+    """What an effect does, in a sentence, as the values that the model has of it tell."""
+    return effect.told({p.spec.name: p.value for p in model.parameters if p.effect == effect})
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ import numpy as np
 
 import sk120stiff as sk
 from sk120stiff.arrays import Array
-from sk120stiff.explain.absolute.choose import alternatives, gain
+from sk120stiff.explain.absolute.choose import Chosen, by_likeliest, gain
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.absolute.standing import alternatives
 
 
 def seen(columns: Array, residual: Array, *, stated: bool) -> Linear:
@@ -44,3 +45,18 @@ def test_a_name_that_many_readings_show_is_sure_though_another_spring_may_be_the
     assert linear.noise(()) > 1.1
     assert linear.score((0,), 1.0) - linear.score((), linear.noise(())) > 300.0
     assert alternatives(linear, (0,), 0) == ((), 1.0)
+
+
+def test_a_name_gives_way_to_one_that_is_clearly_likelier_and_to_no_equal() -> None:
+    rng = np.random.default_rng(5)
+    column = rng.normal(size=600)
+    beside = column + 0.2 * rng.normal(size=600)
+    near, same = np.column_stack([beside, column]), np.column_stack([column, 1.02 * column])
+    noisy = column + 0.5 * rng.normal(size=600)
+    found = by_likeliest(seen(near, noisy, stated=False), Chosen((0,), {}))
+    assert found.order == (1,)
+    assert by_likeliest(seen(near, noisy, stated=False), Chosen((1,), {})).order == (1,)
+    # What was not confirmed does not come in again.
+    assert by_likeliest(seen(near, noisy, stated=False), Chosen((0,), {1: ""})).order == (0,)
+    for first in (0, 1):
+        assert by_likeliest(seen(same, noisy, stated=False), Chosen((first,), {})).order == (first,)

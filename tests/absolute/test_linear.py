@@ -13,10 +13,10 @@ from sk120stiff.explain.absolute.choose import (
     Gain,
     _confirmed,
     _next,
-    alternatives,
     gain,
 )
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.absolute.standing import alternatives
 from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.robot import load_robot
 

@@ -80,6 +80,16 @@ class GearHardening(GearEffect):
             return f"The gear of {self.where} is stiffer under torque of one sign than the other."
         return super().sentence()
 
+    def told(self, values: Mapping[str, float]) -> str:
+        """See `Effect.told`: of one sign, the terms say which way its stiffness goes."""
+        if self.sided or not any(values.values()):
+            return self.sentence()
+        if min(values.values()) >= 0.0:
+            return f"The gear of {self.where} hardens: it gets stiffer as its torque grows."
+        if max(values.values()) <= 0.0:
+            return f"The gear of {self.where} softens: it yields the more the larger its torque is."
+        return self.sentence()
+
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Coefficients κ₂ and κ₃, or the extra compliance c_k below each break torque."""

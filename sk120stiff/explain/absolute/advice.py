@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, entry_price, standing
+from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, entry_price
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.absolute.standing import standing
 from sk120stiff.explain.advise.detectable import length_named
 from sk120stiff.explain.findings import Detectable
 

@@ -13,6 +13,9 @@ from sk120stiff.explain.absolute.linear import Linear
 
 CLEAR = 3.0  # logarithm of odds beyond those of one among all candidates
 USUAL = 2.0  # logarithm of odds of what every arm has: frames a little off, joints that yield
+MENTION = (
+    1.1  # logarithm of odds (3) up to which evidence is worth a mention alone, Kass & Raftery 1995
+)
 RIVAL = 3.0  # loss of evidence at which another cause explains as much
 SHARE = 0.003  # of the held-out gap that a cause must take off to be named on top of others
 SURE = 2.5  # standard errors of the held-out gain over poses
@@ -64,6 +67,25 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         if gained > threshold(linear) and linear.left_out(others, after) < left:
             chosen, dropped = others, fallen
     return Chosen(_beside_frames(linear, _zeros(linear, chosen), dropped), dropped)
+
+
+def by_likeliest(linear: Linear, found: Chosen) -> Chosen:
+    """Each name by the likeliest in its place, where poses left out agree.
+
+    What took most off the large gap at the start may be the less likely one in the end.
+    """
+    frames, chosen = set(frames_of(linear)), found.order
+    for e in [e for e in chosen if e not in frames]:
+        noise, rest = linear.noise(chosen), linear.less(chosen, e)
+        if len(rest) < len(chosen) - 1:
+            continue  # others rest on it
+        others = {e, *linear.may_join(rest)} - {*rest, *found.dropped}
+        odds = {c: linear.score((*rest, c), noise) + usual(linear.candidates[c]) for c in others}
+        best = max(others, key=lambda c: odds[c])
+        other = tuple(best if c == e else c for c in chosen)
+        if odds[best] > odds[e] + MENTION and _confirmed(gain(linear, other, best), linear):
+            chosen = other
+    return Chosen(chosen, found.dropped)
 
 
 def nothing_named(linear: Linear, found: Chosen) -> Chosen:
@@ -155,7 +177,7 @@ def _steps(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 def _together(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
     """What every arm has, all at once: of few numbers each alone explains too little to join."""
-    frames = tuple(f for f in _frames(linear) if f not in chosen)
+    frames = tuple(f for f in frames_of(linear) if f not in chosen)
     every = enumerate(linear.candidates)
     springs = tuple(e for e, effect in every if effect.joint_spring and e not in chosen)
     return [step for step in (frames, springs, (*frames, *springs)) if len(step) > 1]
@@ -167,7 +189,7 @@ def _zeros(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
     Beside the large gap at the start six numbers may take off more than one; in the end one tells.
     """
     zeros = [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_offset"]
-    for e in [frame for frame in _frames(linear) if frame in chosen]:
+    for e in [frame for frame in frames_of(linear) if frame in chosen]:
         noise, rest = linear.noise(chosen), linear.less(chosen, e)
         others = {z: linear.score((*rest, z), noise) for z in zeros if z not in chosen}
         best = max(others, key=lambda z: others[z], default=e)
@@ -188,7 +210,7 @@ def _beside_frames(
     own; a single one elsewhere may then stand for several of them, as a tracker that misreads the
     scale does for an arm that is longer in every link.
     """
-    frames = _frames(linear)
+    frames = frames_of(linear)
     if not set(frames) & set(chosen):
         return chosen
     for e in [e for e in chosen if usual(linear.candidates[e]) <= 0.0]:
@@ -210,7 +232,8 @@ def _beside_frames(
     return chosen
 
 
-def _frames(linear: Linear) -> list[int]:
+def frames_of(linear: Linear) -> list[int]:
+    """Candidates that are frames of joints."""
     return [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_frame"]
 
 
@@ -291,93 +314,6 @@ def gain(linear: Linear, chosen: tuple[int, ...], e: int) -> Gain:
         errors=float(saved.sum()) / max(error, 1e-300),
         folds=sum(saved_there > 0.0 for saved_there in per_fold),
     )
-
-
-def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple[int, ...], float]:
-    """Candidates that explain as much in the place of one of the chosen, and its probability."""
-    rivals, _, weight = _rivals(linear, chosen, e)
-    return rivals, float(weight[:-1].sum() / weight.sum())
-
-
-def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
-    """Probability of one of the chosen, and of each that explains as much in its place."""
-    rivals, prior, weight = _rivals(linear, chosen, e)
-    weight = weight * np.exp([*prior, 0.0])
-    share = weight / weight.sum()
-    names = [linear.candidates[c].id for c in (e, *rivals)]
-    return dict(zip(names, map(float, share), strict=False))
-
-
-def _rivals(
-    linear: Linear, chosen: tuple[int, ...], e: int
-) -> tuple[tuple[int, ...], list[float], Array]:
-    """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing."""
-    noise = linear.noise(chosen)
-    rest = linear.less(chosen, e)
-    nothing = linear.score(rest, noise)
-    own = linear.score(chosen, noise)
-    frames = set(_frames(linear))
-    alone = e in frames and frames & set(rest)  # no frame is exact where others are off
-    others = {
-        c: linear.score((*rest, c), noise)
-        for c in linear.may_join(rest)
-        if c not in chosen and not alone
-    }
-    rivals = tuple(
-        c
-        for c, score in others.items()
-        if score + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
-        and score > nothing
-    )
-    scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
-    prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
-    weight = np.exp(scores - scores.max())
-    narrow = float(weight[:-1].sum() / weight.sum())
-    sure = _beside_what_every_arm_has(linear, chosen, (e, *rivals), narrow, len(others))
-    doubt = (1.0 - sure) / max(sure, 1e-300) + _impostor(linear, chosen, rest)
-    weight[-1] = doubt * weight[:-1].sum()
-    return rivals, prior, weight
-
-
-def _beside_what_every_arm_has(
-    linear: Linear, chosen: tuple[int, ...], own: tuple[int, ...], narrow: float, others: int
-) -> float:
-    """Probability of a name, averaged over the chosen model and that with all frames and springs.
-
-    Where few numbers are left over, those that nothing asked for may bring as much; where many are,
-    they cost more than they explain, and do not count.
-
-    Args:
-        linear: The positions linearised.
-        chosen: The causes of the answer.
-        own: The name, and what explains as much in its place.
-        narrow: Its probability where nothing else is at work.
-        others: How many names were looked at in its place.
-    """
-    springs = (c for c, effect in enumerate(linear.candidates) if effect.joint_spring)
-    usual_ones = [c for c in (*_frames(linear), *springs) if c not in (*chosen, *own)]
-    if not usual_ones:
-        return narrow
-    wide = (*chosen, *usual_ones)
-    without = linear.less(wide, own[0])
-    scores = [linear.score(each, linear.noise(each)) for each in (chosen, wide, without)]
-    taken = 1.0 / (1.0 + np.exp(np.clip(scores[2] + np.log(others + 1.0) - scores[1], -50, 50)))
-    share = 1.0 / (1.0 + np.exp(np.clip(scores[0] - scores[1], -50.0, 50.0)))
-    return float((1.0 - share) * narrow + share * min(taken, narrow))
-
-
-def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) -> float:
-    """Odds that a name is the part of an unknown cause that looks like it.
-
-    An unknown cause is at work where what is left is smooth. It is as likely to be like the name
-    as not: of the squares of such causes any share may be alike (the squared cosine between the
-    two, evenly spread), and the rest is left.
-    """
-    if not linear.smooth:
-        return 0.0
-    after, before = (linear.left_out(each, linear.noise(each)) for each in (chosen, rest))
-    left = linear.smooth * after
-    return left / (left + max(before - after, 0.0))
 
 
 def lengths(gap: Array, linear: Linear, whole: Mask) -> Array:

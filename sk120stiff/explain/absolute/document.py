@@ -20,6 +20,7 @@ from sk120stiff.explain.answer.document import (
     share_entries,
 )
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
+from sk120stiff.explain.findings import sentence_in
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import Calibration, known_model
@@ -154,7 +155,7 @@ def _effect(
         "probability": min(item.probability, SURE),
         "share_um": micrometres(share) if len(problem.lengths) else None,
         "parameters": [entries[p.name] for p in own],
-        "sentence": item.effect.sentence(),
+        "sentence": sentence_in(answer.final.model, item.effect),
         "equation": item.effect.equation,
         "axes": item.effect.axes,
         "evidence": {

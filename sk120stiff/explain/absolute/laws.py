@@ -15,8 +15,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, LoadCases
 from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
-from sk120stiff.explain.absolute.choose import alternatives
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.absolute.standing import alternatives
 from sk120stiff.explain.candidates.regression import price_of_law
 from sk120stiff.explain.judge.selection_uncertainty import (
     LAWS,

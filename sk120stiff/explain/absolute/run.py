@@ -24,7 +24,7 @@ from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.changed import changed
 from sk120stiff.explain.absolute.choose import (
     Chosen,
-    alternatives,
+    by_likeliest,
     choose,
     gain,
     nothing_named,
@@ -35,6 +35,7 @@ from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, la
 from sk120stiff.explain.absolute.linear import Linear, everything
 from sk120stiff.explain.absolute.other_poses import NextPoses, elsewhere, never_told, next_poses
 from sk120stiff.explain.absolute.remainder import where_it_lives
+from sk120stiff.explain.absolute.standing import alternatives
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options, refuse_unknown
 from sk120stiff.identify import refuse_for_positions, refuse_plan
@@ -186,6 +187,8 @@ def _selected(
     """Names about a calibration, each by its best law; all their laws, and what does not show."""
     linear, hidden = linear_at(base, options, catalogue, seen)
     found = choose(linear)
+    if seen is not base:  # about the rigid arm near ties are not told
+        found = by_likeliest(linear, found)
     laws = laws_at(linear, found.order, seen)
     return by_best_laws(linear, found.order, laws), found, laws, hidden
 

@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 from scipy import optimize, stats
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import of_length_one
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import Detectable
@@ -38,7 +38,7 @@ def detectable(
     named = chosen.union(*(finding.alternatives for finding in answer.findings))
     inside = [k for k, e in enumerate(regression.candidates) if e.id in chosen]
     columns = score_set(regression, sums, inside).solved.columns
-    basis, _ = np.linalg.qr(_unit(regression.X[:, columns]))
+    basis, _ = np.linalg.qr(of_length_one(regression.X[:, columns]))
     left = regression.X - basis @ (basis.T @ regression.X)
     size = np.linalg.norm(left, axis=0)
     noise = 1.0 if regression.sigma_known else answer.final.noise_factor
@@ -73,8 +73,3 @@ def length_named(fall: float, count: int) -> float:
         return float(stats.ncx2.sf(fall, count, length**2)) - POWER
 
     return float(optimize.brentq(short, 1e-3, 3.0 * np.sqrt(fall + count) + 10.0))
-
-
-def _unit(matrix: Array) -> Array:
-    norms = np.linalg.norm(matrix, axis=0)
-    return np.asarray(matrix[:, norms > 0.0] / norms[norms > 0.0])

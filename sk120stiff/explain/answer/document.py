@@ -14,7 +14,7 @@ from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
-from sk120stiff.explain.findings import Finding, TaskBudget
+from sk120stiff.explain.findings import Finding, TaskBudget, sentence_in
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -194,7 +194,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "share_um": micrometres(share_of(answer, finding)),
         "parameters": [parameter_entry(p, unseen.get(p.name), ends.get(p.name)) for p in found],
         "size": None if whole is None else asdict(whole),
-        "sentence": finding.effect.sentence(),
+        "sentence": sentence_in(answer.final.model, finding.effect),
         "equation": finding.effect.equation,
         "axes": finding.effect.axes,
         "evidence": {

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Mask, of_length_one
 from sk120stiff.effects import Effect, LoadCases
 from sk120stiff.errors import Refusal
 from sk120stiff.model import Model
@@ -65,7 +65,7 @@ def imitators(
         others: Which are looked at.
         values: (p,) parameters of `name`, in their typical sizes.
     """
-    base = _directions(_unit(X[:, beside]))
+    base = _directions(of_length_one(X[:, beside]))
     whole = X[:, owner == name] @ values
     signature = _without(base, whole)
     left = float(np.linalg.norm(signature))
@@ -73,7 +73,7 @@ def imitators(
         return ()  # it goes by order or pose, or the others have all of it: no sign of its own
     found = []
     for other in others:
-        own = _directions(_without(base, _unit(X[:, owner == other])))
+        own = _directions(_without(base, of_length_one(X[:, owner == other])))
         if np.linalg.norm(_without(own, signature)) <= SAME * left:
             found.append(other)
     return tuple(found)
@@ -113,12 +113,6 @@ def aliases_by_design(
         if size > 0.0 and abs(float(signature @ own[:, 0])) > (1.0 - SAME) * size:
             found.append(other.id)
     return tuple(found)
-
-
-def _unit(columns: Array) -> Array:
-    """Columns of length one, without those that are zero."""
-    norms = np.linalg.norm(columns, axis=0)
-    return np.asarray(columns[:, norms > 0.0] / norms[norms > 0.0])
 
 
 def _directions(columns: Array) -> Array:

@@ -17,7 +17,7 @@ import numpy as np
 from scipy import linalg, stats
 from scipy.optimize import minimize
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, lengths_of
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.written import AnyFit, with_values
@@ -134,7 +134,7 @@ def _some(problem: PoseProblem) -> Index:
 
 def _complement(columns: Array) -> Array:
     """(M, M - rank) orthonormal directions that no estimated parameter moves."""
-    size = np.linalg.norm(columns, axis=0)
+    size = lengths_of(columns)
     U, told, _ = np.linalg.svd(columns / np.where(size > 0.0, size, 1.0), full_matrices=True)
     return np.asarray(U[:, int((told > 1e-9 * told.max(initial=1e-300)).sum()) :])
 

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 from scipy import stats
 from scipy.optimize import minimize_scalar
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, lengths_of
 
 RANGE = (-16.0, -4.0)  # ln of rad or m; joints stand off by 0.1 µrad to 20 mrad
 NOTHING = -50.0  # the same of no error at all
@@ -125,8 +125,8 @@ def common_error(
     white = whitening.ways / whitening.sigma[:, None]
     parts = list(directions(white, whitening.pose))
     X = derivative / whitening.sigma[:, None]
-    X = X[:, np.linalg.norm(X, axis=0) > 0.0]
-    X = X / np.linalg.norm(X, axis=0)
+    size = lengths_of(X)
+    X = X[:, size > 0.0] / size[size > 0.0]
     U, told, _ = np.linalg.svd(X, full_matrices=False)
     X = U[:, told > 1e-9 * told.max(initial=1e-300)]  # what they span, of full rank
     A = np.column_stack([X, gap / whitening.sigma])

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from scipy import linalg
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, lengths_of
 from sk120stiff.effects import Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.reading_drift import BRIEF, COURSES
@@ -209,7 +209,7 @@ class _Steps:
         known += [self.frame * course[:, None] for course in creeping]
         A = np.concatenate([self.columns, *known], axis=1)
         prior = np.concatenate([self.prior, np.zeros(A.shape[1] - len(self.prior))])
-        size = np.linalg.norm(A, axis=0)
+        size = lengths_of(A)
         A, prior = A[:, size > 0.0] / size[size > 0.0], prior[size > 0.0] / size[size > 0.0] ** 2
         H = linalg.cho_factor(A.T @ A + np.diag(prior + ROUNDING))
         left = self.gap - A @ linalg.cho_solve(H, A.T @ self.gap)

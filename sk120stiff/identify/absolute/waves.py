@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import logsumexp
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, lengths_of
 from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.effects.options import Options
 from sk120stiff.identify.absolute.left_out import COUNTED, posterior
@@ -75,7 +75,7 @@ def _bic(blocks: list[Array], residual: Array) -> float:
     count, left, rank = len(residual), residual, 0
     if blocks:
         A = np.concatenate(blocks, axis=1)
-        size = np.linalg.norm(A, axis=0)
+        size = lengths_of(A)
         A = A / np.where(size > 0.0, size, 1.0)
         weights, _, found, _ = np.linalg.lstsq(A, residual, rcond=1e-6)
         left, rank = residual - A @ weights, int(found)

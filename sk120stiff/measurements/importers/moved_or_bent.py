@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, lengths_of
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.robot import Robot
@@ -76,7 +76,7 @@ def _columns(robot: Robot, q: Array, marker: Array) -> tuple[Array, Array]:
 
 
 def _of_unit_size(columns: Array) -> Array:
-    size = np.linalg.norm(columns, axis=0)
+    size = lengths_of(columns)
     return np.asarray(columns / np.where(size > 0.0, size, 1.0))
 
 

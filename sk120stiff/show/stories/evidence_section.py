@@ -12,6 +12,7 @@ from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import told_next
+from sk120stiff.explain.findings import sentence_in
 from sk120stiff.explain.judge.posterior import NONE
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
@@ -50,7 +51,8 @@ def evidence_section(answer: Explanation) -> Section:
 
 
 def _finding(answer: Explanation, finding: Finding) -> list[Block]:
-    blocks: list[Block] = [f"**{finding.effect.sentence()}** (`{finding.effect.id}`)"]
+    said = sentence_in(answer.final.model, finding.effect)
+    blocks: list[Block] = [f"**{said}** (`{finding.effect.id}`)"]
     whole = whole_size(answer, finding)
     blocks += [sizes_of(answer, finding), *([] if whole is None else [whole.sentence])]
     blocks += [Items(list(comment_lines(finding.effect)))]

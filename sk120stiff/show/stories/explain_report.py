@@ -8,7 +8,7 @@ from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.words import noise_words
-from sk120stiff.explain.findings import likely
+from sk120stiff.explain.findings import likely, sentence_in
 from sk120stiff.measurements import Measurements
 from sk120stiff.show.report import (
     Block,
@@ -117,7 +117,7 @@ def _line(answer: Explanation, k: int) -> str:
         rivals = [*rivals[:FEW], counted(len(rivals) - FEW, "other")]
     alternatives = f", or {listed(rivals, 'or')}" if rivals else ""
     return (
-        f"{finding.effect.sentence()} (`{finding.effect.id}`{alternatives}) "
+        f"{sentence_in(answer.final.model, finding.effect)} (`{finding.effect.id}`{alternatives}) "
         f"{likely(finding.probability)}{' together' if rivals else ''}. Held-out gap "
         f"{um(before.heldout_rms)} → {um(step.heldout_rms)} µm; better in {c.folds_improved} of "
         f"{c.folds} folds; same name in {percent(c.frequency)} of resamplings."

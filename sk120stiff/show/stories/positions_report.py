@@ -8,6 +8,7 @@ import numpy as np
 
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
+from sk120stiff.explain.findings import sentence_in
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.show.figures import GapStep, gap_waterfall
 from sk120stiff.show.figures.budget import budget_bars
@@ -59,8 +60,9 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         units=("", unit),
     )
     named = [
-        f"{item.effect.sentence()} (`{item.effect.id}`) {answer.chance_of(item)}; takes off "
-        f"{100 * item.gain.share:.1f} % of the held-out gap beside the others."
+        f"{sentence_in(answer.final.model, item.effect)} (`{item.effect.id}`) "
+        f"{answer.chance_of(item)}; takes off {100 * item.gain.share:.1f} % of the held-out gap "
+        "beside the others."
         + (f" Not told from: {', '.join(item.others)}." if item.others else "")
         + (f" Always the same in such readings: {', '.join(item.exact)}." if item.exact else "")
         for item in answer.findings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
-from sk120stiff.explain.findings import likely
+from sk120stiff.explain.findings import likely, sentence_in
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.show.wording import chance, counted, um
 
@@ -69,17 +69,17 @@ def _none(answer: Explanation) -> str:
 
 
 def _named(answer: Explanation) -> str:
-    said = " ".join(finding.effect.sentence() for finding in answer.findings)
+    said = " ".join(sentence_in(answer.final.model, finding.effect) for finding in answer.findings)
     return f"{said} {shrinks(answer)}"
 
 
 def _ambiguous(answer: Explanation) -> str:
-    settled = [f.effect.sentence() for f in answer.findings if f.settled]
+    settled = [sentence_in(answer.final.model, f.effect) for f in answer.findings if f.settled]
     open_ = [f for f in answer.findings if not f.settled]
     said = " ".join(settled)
     for finding in open_:
         rivals = [sentence_of(answer, name) for name in near(finding)]
-        said += f" {finding.effect.sentence()}"
+        said += f" {sentence_in(answer.final.model, finding.effect)}"
         if not rivals:
             said += f" That is not sure ({likely(finding.probability, 'probability')})."
             continue
