@@ -16,7 +16,6 @@ from sk120stiff.effects.gear import GearHardening
 from sk120stiff.effects.link_beam import STATIONS, TAPER, shares
 from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError
-from sk120stiff.explain.findings import sentence_in
 from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.robot import load_robot
 
@@ -184,30 +183,6 @@ def test_gear_that_is_softer_one_way():
         wrench = np.array([0.0, side, 0.0, 0.0, 0.0, 0.0])
         close(model.predict(load_case(model.robot, NOTHING, wrench))[0], [0, expected, 0])
     assert "one sign" in gear.sentence()
-
-
-@pytest.mark.parametrize(
-    ("names", "values", "word"),
-    [
-        (("quadratic", "cubic"), (1e-9, 2e-12), "hardens:"),
-        (("quadratic", "cubic"), (0.0, -2e-12), "softens:"),
-        (
-            ("quadratic", "cubic"),
-            (1e-9, -2e-12),
-            "hardens or softens",
-        ),  # by how large the torque is
-        (("extra_below_150",), (2e-6,), "hardens:"),
-        (("extra_negative",), (-1e-6,), "one sign"),
-    ],
-)
-def test_a_gear_is_said_to_go_the_way_that_its_values_say(names, values, word):
-    gear = GearHardening.at(
-        boom(), "yaw", GearHardening.options_of(dict.fromkeys(names, "rad/(N*m)"))
-    )
-    told = dict(zip(names, values, strict=True))
-    model = (Model(boom()) + gear).with_public(**{f"{gear.id}.{n}": v for n, v in told.items()})
-    assert word in sentence_in(model, gear)
-    assert sentence_in(Model(boom()), gear) == gear.sentence()  # of no value it knows nothing
 
 
 def breaks_of(*names):
