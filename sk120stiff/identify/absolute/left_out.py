@@ -2,10 +2,11 @@
 
 A joint frame that is frozen, or that nothing asked for, is not exact: it is off by as much as those
 that could be told, as far as the readings allow. So with springs: where some joints yield, those
-that nothing asked for are not rigid. With such a prior beside the readings the information on all
-parameters together is inverted; what that adds to the variance of an estimate, and how far it would
-move, is its doubt (Bayes' rule with Gaussian nuisances, e.g. Tarantola 2005, ch. 3). Errors of
-geometry themselves have none: where their sum is counted is a convention, and said.
+that nothing asked for are not rigid; so with an arm whose masses nobody stated. With such a prior
+beside the readings the information on all parameters together is inverted; what that adds to the
+variance of an estimate, and how far it would move, is its doubt (Bayes' rule with Gaussian
+nuisances, e.g. Tarantola 2005, ch. 3). Errors of geometry themselves have none: where their sum is
+counted is a convention, and said.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Catalogue, Effect, Mounting, Viewpoint
 from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
+from sk120stiff.identify.absolute.own_weight import own_weight
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.written import with_values
@@ -29,24 +31,26 @@ NORMAL = 0.6745  # median of |x| of a standard normal x
 
 
 def doubted(found: Fit, catalogue: Catalogue) -> Fit:
-    """The fit with standard errors that know of frames and springs that it leaves out."""
+    """The fit with standard errors that know of what it leaves out: frames, springs, own weight."""
     problem = found.problem
     if not isinstance(problem, PoseProblem) or not np.isfinite(found.unit):
         return found
     wide, sizes = _with_left_out(found.model, catalogue)
     counted = np.array([isinstance(p.effect, COUNTED) for p in found.parameters])
-    if not len(sizes) or counted.all():
+    heavy = own_weight(problem)
+    if counted.all() or not (sizes or heavy.size):
         return found
     slope = replace(problem, model=wide).channel_gap(wide.values, derivative=True)[1]
     slope = problem.of_channels.apply(slope) / found.unit
     kept = slope[:, found.problem.free] * problem.scale
     more = slope[:, list(sizes)] * np.array(list(sizes.values()))
+    more = np.column_stack([more, problem.of_channels.apply(heavy) / found.unit])
     moving = ~found.at_bound
     left = found.residual / found.unit
     drawn = 1.0 / problem.prior[moving] ** 2
     here, alone = posterior(kept[:, moving], drawn, left)
     every = np.column_stack([kept[:, moving], more])
-    there, beside = posterior(every, np.concatenate([drawn, np.ones(len(sizes))]), left)
+    there, beside = posterior(every, np.concatenate([drawn, np.ones(more.shape[1])]), left)
     moved = there[: len(here)] - here
     error = np.zeros(len(found.x))
     error[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0) + moved**2)

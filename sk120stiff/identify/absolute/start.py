@@ -115,11 +115,17 @@ def loaded(model: Model, readings: Measurements) -> tuple[Model, list[str]]:
     weighs = model.robot.mechanism().chain.weighs and model.robot.gravity.any()
     hung = said is not None and bool(said.payload.any()) and bool(model.robot.gravity.any())
     if weighs or hung or readings.wrench.any():
-        light = hung and not model.robot.mechanism().chain.weighs
+        if said is None or not hung or model.robot.mechanism().chain.weighs:
+            return model, []
+        other = (
+            "." if said.payload_differs
+            else ", or read each pose under two payloads: by what they differ springs are told "
+            "without it. The springs' errors hold what it may do."
+        )  # fmt: skip
         return model, [
             "The URDF states no masses: what the arm's own weight does is not in the model, and "
-            "springs and waves may stand for it. State the masses."
-        ] if light else []
+            f"springs and waves may stand for it. State the masses{other}"
+        ]
     springs = [effect.id for effect in model.effects if isinstance(effect, Elastic)]
     for name in springs:
         model = model.without(name)

@@ -1,0 +1,70 @@
+"""What the own weight of an arm whose URDF states no masses may do to positions.
+
+The first moment of each link, mass times centre, turns every joint below it by its torque times the
+joint's compliance. What nobody stated is of the size of what the arm lifts: a payload at full reach
+turns the joints of an arm about as much as its links do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.robot.rotations import cross_product
+
+ALONG = 0.1  # sine between a joint's axis and the next one, below which they are as good as one
+
+
+def own_weight(problem: PoseProblem) -> Array:
+    """(M, 3 m) change of each number by the moments of m links about three directions of theirs.
+
+    Each is as large as the heaviest payload at the reach beyond its joint. No columns where the
+    arm's masses are stated, nothing hangs on it, or what a load does alone was read.
+    """
+    robot, said = problem.model.robot, problem.said
+    none = np.zeros((len(problem.rows), 0))
+    heaviest = float(np.abs(said.payload).max(initial=0.0))
+    weighs = robot.mechanism().chain.weighs
+    if weighs or not heaviest or problem.channels.displacements_alone:
+        return none
+    springs = {
+        robot.actuated.index(p.effect.where): p.internal
+        for p in problem.model.parameters
+        if p.effect.joint_spring
+    }
+    turned = list(_torques(problem, heaviest))
+    if not springs or not turned:
+        return none
+    joints, c = list(springs), np.array(list(springs.values()))
+    slope = problem.by_joints[:, joints] * c  # (M, springs)
+    torques = np.stack(turned, axis=-1)[problem.rows][:, joints]  # (M, springs, 3 m)
+    return np.asarray(np.einsum("ms,msk->mk", slope, torques))
+
+
+def _torques(problem: PoseProblem, heaviest: float) -> Iterator[Array]:
+    """(N, n) torques on the coordinates by each moment of each link [N·m]."""
+    robot, cases = problem.model.robot, problem.load_cases
+    screws, g = robot.screws(cases.a), robot.gravity_in_base
+    for j in range(screws.axes.shape[-2]):
+        reach = np.linalg.norm(screws.position - screws.origins[:, j], axis=1).max()
+        for way in _of_link(screws.axes, screws.origins, screws.rotation, j):
+            moment = heaviest * float(reach) * cross_product(way, np.broadcast_to(g, way.shape))
+            about = (screws.angular[:, : j + 1] * moment[:, None]).sum(-1)  # (N, j + 1)
+            yield (about[:, None] @ screws.first[..., : j + 1, :])[:, 0]
+
+
+def _of_link(axes: Array, origins: Array, tool: Array, j: int) -> tuple[Array, Array, Array]:
+    """Three unit directions (N, 3) that turn with the link behind joint `j` of a chain."""
+    one = axes[:, j]
+    if j + 1 < axes.shape[1]:
+        others = [axes[:, j + 1], origins[:, j + 1] - origins[:, j]]
+    else:
+        others = [tool[:, :, k] for k in range(3)]
+    across = [other - (other * one).sum(-1, keepdims=True) * one for other in others]
+    sizes = [float(np.linalg.norm(each, axis=1).min()) for each in across]
+    told = next((k for k, size in enumerate(sizes) if size > ALONG), int(np.argmax(sizes)))
+    two = across[told] / np.maximum(np.linalg.norm(across[told], axis=1, keepdims=True), 1e-300)
+    return one, two, cross_product(one, two)
