@@ -78,7 +78,7 @@ def test_what_is_called_wild_took_no_part_in_the_fit(
 ) -> None:
     """Round after round one row more."""
     module, calls = sys.modules[calibrate.__module__], []
-    first = module.far_off
+    first = module.wild_beside
 
     def one_more(*given: Any) -> np.ndarray:
         calls.append(given)
@@ -86,7 +86,7 @@ def test_what_is_called_wild_took_no_part_in_the_fit(
         out[: min(len(calls), 9)] = True
         return np.asarray(out)
 
-    monkeypatch.setattr(module, "far_off", one_more)
+    monkeypatch.setattr(module, "wild_beside", one_more)
     model, data = opened(read(tmp_path / "own", 60, 41, ()))
     found = calibrate(model, data, waves=False)
     assert len(calls) > module.ROUNDS

@@ -14,7 +14,7 @@ from sk120stiff.explain.absolute.choose import Chosen, lengths
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.findings import Contender
 from sk120stiff.identify.absolute.calibrate import Calibration
-from sk120stiff.identify.absolute.noise_sizes import far_off
+from sk120stiff.identify.absolute.noise_sizes import wild_beside
 from sk120stiff.identify.absolute.placed_anew import placed_anew
 from sk120stiff.measurements import Measurements
 
@@ -165,7 +165,7 @@ def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
     moved = placed_anew(final.model, others)
     if moved is not None:
         final = replace(final, model=moved.model)
-    wild = far_off(final, others, np.zeros(others.n_readings, dtype=bool))
+    wild = wild_beside(final, others, np.zeros(others.n_readings, dtype=bool))
     problem = replace(final.problem, measurements=others.masked(), model=final.model)
     gap, kept = problem.channel_gap(final.model.values)[0], ~wild[others.use]
     counted = problem.counted

@@ -20,9 +20,9 @@ from sk120stiff.identify.absolute.noise_sizes import (
     START,
     alike,
     common_of,
-    far_off,
     learned,
     of_poses,
+    wild_beside,
 )
 from sk120stiff.identify.absolute.pose_problem import PoseProblem, row_lengths
 from sk120stiff.identify.absolute.refusals import (
@@ -219,7 +219,7 @@ def _fitted(
             if told.size and not common:  # what was all noise is parted into two
                 sigma = {k: told.noise * before[k] for k in START}
             common = told.size
-        again = far_off(found, readings, wild)
+        again = wild_beside(found, readings, wild)
         same = alike(common, before.pop("")) and all(
             alike(sigma[k], before[k]) for k in wide.channels.present
         )

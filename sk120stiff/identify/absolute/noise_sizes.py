@@ -57,7 +57,7 @@ def common_of(found: Fit) -> Common:
     )
 
 
-def far_off(found: Fit, readings: Measurements, wild: Mask) -> Mask:
+def wild_beside(found: Fit, readings: Measurements, wild: Mask) -> Mask:
     """(N,) rows whose gap no normal noise of the size of the others gives; others come back.
 
     Args:
