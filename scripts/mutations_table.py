@@ -22,10 +22,12 @@ FAULTS: tuple[Fault, ...] = (
         a_second_outlier_beside_the_first_shift=("left[each.readings] -= (each", "left[each.readings] -= 0.0 * (each"),
         a_shift_that_takes_nothing_of_the_readings=("residual = residual - new.T @ (new @ y)", "residual = residual + 0.0"),
         a_shift_counted_with_what_the_fit_has=("free = -(self.first.T @ near)", "free = (self.first.T @ near)"),
+        slips_that_count_again=("> NEXT * scale", "> 99 * NEXT * scale"),
     ),
     *of(
         "explain/select/stepwise.py", *tests("explain", "outliers"),
-        nothing_stands_apart_of_a_model=("    if not len(outliers):\n", "    if False:\n"),
+        nothing_stands_apart_of_a_model=("    if not len(outliers):\n        outliers =", "    if False:\n        outliers ="),
+        outliers_of_flanks_for_ever=("while len(still :=", "while 99 + 0 * len(still :="),
     ),
     *of(
         "measurements/branches.py", *tests("measurements", "branches"),

@@ -1,7 +1,8 @@
 """Slips of the pen at single rows, which no correction of a whole column mends.
 
 A sign that was forgotten, axes that changed places, a decimal point, two rows whose readings were
-exchanged. A slip is told where with it the reading fits as the others do.
+exchanged. A slip is told where with it the reading fits as the others do, and without it every axis
+that it changes does not.
 """
 
 from __future__ import annotations
@@ -36,7 +37,9 @@ def slips_of_rows(
     out = {}
     for row in rows:
         for slip, mended in _single(read[row]):
-            if _fits(mended, told[row], limit):
+            changed = np.isfinite(read[row]) & (mended != read[row])
+            off = np.abs(read[row] - told[row])[changed] >= limit
+            if off.all() and _fits(mended, told[row], limit):
                 out[row] = slip
                 break
     alone = [row for row in rows if row not in out]

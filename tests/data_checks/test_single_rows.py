@@ -73,3 +73,16 @@ def test_axes_that_were_not_read_are_not_asked(readings: Measurements):
     read[ROW, 0] *= -1.0
     read[ROW, 1:] = np.nan
     assert _slips(read, readings, ROW) == {ROW: "dx would fit with the other sign"}
+
+
+def test_an_axis_that_fits_as_it_stands_has_no_slip(readings: Measurements):
+    """It lies near zero, and would fit with the other sign as well; what is off is another."""
+    read = np.array(readings.displacement)
+    told = read.copy()
+    told[ROW, 1] = read[ROW, 1] = 0.3 * LIMIT
+    read[ROW, 2] += 0.9 * LIMIT
+    assert slips_of_rows(replace(readings, displacement=read), [ROW], told, LIMIT) == {}
+    read[ROW, 0] *= -1.0
+    assert list(
+        slips_of_rows(replace(readings, displacement=read), [ROW], told, LIMIT).values()
+    ) == ["dx would fit with the other sign"]

@@ -1,10 +1,12 @@
 """Which readings are set aside: slips at single readings, never what a tracker does as it warms."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from sk120stiff import base_model, load_robot
 from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.regression import regression_at
@@ -47,6 +49,17 @@ def warming(readings: Measurements, over: float, by: float) -> Measurements:
     course = np.exp(-zero / over) - np.exp(-at / over)
     moved = np.array(readings.displacement) + by * course[:, None] * WAY
     return replace(readings, displacement=moved)
+
+
+def test_a_reading_that_the_named_model_holds_counts_again(monkeypatch: pytest.MonkeyPatch):
+    """Rows of a gear's flank may be off every usual law; the slip beside them stays out."""
+    stepwise = sys.modules["sk120stiff.explain.select.stepwise"]
+    monkeypatch.setattr(stepwise, "outlying_rows", lambda *_: np.array([3, 17, 40]))
+    model = base_model(load_robot("motoman_sk120"))
+    assert model is not None
+    answer = answered(model, off(hidden(), [17], 40 * SIGMA), options=Options(only=("joint_tilt",)))
+    assert answer.set_aside == (17,)
+    assert answer.final.problem.measurements.n_readings == answer.readings.n_readings - 1
 
 
 @pytest.mark.parametrize("seed", [7, 8, 9])

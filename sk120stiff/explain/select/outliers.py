@@ -16,6 +16,7 @@ from scipy.stats import chi2
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.explain.candidates.regression import Regression
+from sk120stiff.identify import Problem
 from sk120stiff.measurements import FormWhitener, Whitener
 from sk120stiff.measurements.poses import rows_by_label
 
@@ -105,6 +106,26 @@ def standing_apart(
     shifts = _shift_columns(whitener, regression.group, borne_out)
     clean = chi2.isf(CLEAN, len(regression.y)) if regression.sigma_known else None
     return _far_off(partial(_peeled, *held, regression.y, shifts), shifts, clean).rows
+
+
+def still_outlying(outliers: Index, residual: Array, problem: Problem, scale: float) -> Index:
+    """Those of some outliers that are so beside a model, too, which was found without them.
+
+    A reading on a flank of a gear's curve is off all that the catalogue says at once by its usual
+    laws; the law that was named holds it.
+
+    Args:
+        outliers: Rows of all readings.
+        residual: (R,) what the model leaves of all readings, whitened.
+        problem: Of all readings.
+        scale: Of the noise of the others, in units of what was assumed.
+    """
+    shifts = _shift_columns(problem.whitener, problem.load_cases.pose[problem.whitener.reading])
+    off = np.zeros((problem.measurements.n_readings, 3))
+    for each in shifts:
+        size = np.sqrt(np.maximum((each.columns**2).sum(1), 1e-300))
+        off[each.readings] = np.abs(each.along(residual[None])[0]) / size
+    return np.asarray(outliers[off[outliers].max(axis=1) > NEXT * scale])
 
 
 def _whole_catalogue(regression: Regression) -> tuple[Array, Array]:

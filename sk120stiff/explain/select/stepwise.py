@@ -16,7 +16,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search, exchanged
-from sk120stiff.explain.select.outliers import outlying_rows, standing_apart
+from sk120stiff.explain.select.outliers import outlying_rows, standing_apart, still_outlying
 from sk120stiff.explain.select.own_sizes import own_sizes, price_of_factors
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.identify import Fit, Problem, fit, solve, solve_near
@@ -112,6 +112,10 @@ def select(
         if len(outliers):
             base, regression = with_own_sizes(*without(outliers))
             final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
+    while len(still := _still_outlying(final, measurements, outliers)) < len(outliers):
+        outliers = still
+        base, regression = with_own_sizes(*without(outliers))
+        final, regression, chosen = _settle(base, regression, candidates, ids, max_effects)
     whole = base.problem.whitener.logdet + price_of_factors(base.problem.noise.form)
     score = score_set(regression, regression.sums(), chosen).score
     numbers = np.log(float(measurements.read.sum()))
@@ -127,6 +131,16 @@ def select(
         searched=total,
         at_base=at_base,
     )
+
+
+def _still_outlying(final: Fit, measurements: Measurements, outliers: Index) -> Index:
+    """Those of the rows set aside that the model does not hold."""
+    if not len(outliers):
+        return outliers
+    problem = Problem(final.model, measurements, final.problem.noise)
+    residual, _ = problem.evaluate(final.x)
+    scale = max(final.noise_factor, 1.0) if final.sigma_known else final.noise_factor
+    return still_outlying(outliers, residual, problem, scale)
 
 
 def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
