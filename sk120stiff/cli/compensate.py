@@ -55,6 +55,7 @@ from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import feasible
 from sk120stiff.programs import language_of
 from sk120stiff.programs.building import convention
+from sk120stiff.programs.controller import frame_words
 from sk120stiff.programs.placing import TOOL_DOWN
 from sk120stiff.units import parse_size
 from sk120stiff.workspace import (
@@ -205,6 +206,9 @@ def command(
     facts = (*facts, *(point_words(believed) if at in (None, robot.tool_frame) else ()))
     if language is not None and not robot.controller.axes:
         facts = (*facts, f"In the program {convention(robot)}.")
+    if language is not None:
+        stated = not language.in_part_frame(language.with_defaults(chosen))
+        facts = (*facts, *frame_words(robot, part, stated=stated))
     assumed = assumed_at_work(robot, around)
     held_at = given.wrench if at in (None, robot.tool_frame) else None
     wrong = infeasible(robot, around, nominal, given, held_at)

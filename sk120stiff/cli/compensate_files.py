@@ -26,6 +26,7 @@ from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
 from sk120stiff.programs.bad_targets import refuse_bad_targets
 from sk120stiff.programs.building import build
+from sk120stiff.programs.controller import checked_text
 from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.robot import Robot, find_robot
 from sk120stiff.workspace import Compensation, Judged, LoadedPath
@@ -111,7 +112,8 @@ def write_program(
         by_joints=by_joints, given=settings, facts=facts,
         date=datetime.now(UTC).strftime("%Y/%m/%d %H:%M"),
     )  # fmt: skip
-    write_atomically(out, language.text(program))
+    in_part = part if language.in_part_frame(program.settings) else None
+    write_atomically(out, checked_text(language, program, robot, found.a, frame, in_part))
     return program.settings
 
 

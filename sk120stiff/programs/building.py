@@ -13,6 +13,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.joint_map import parse_linear
+from sk120stiff.programs.controller import controller_frame, is_elsewhere, places
 from sk120stiff.programs.language import Language
 from sk120stiff.programs.program import Program
 from sk120stiff.robot import Robot
@@ -55,15 +56,13 @@ def build(
     """
     settings = language.with_defaults(_with_pulses(language, robot, given))
     axes, slides, values = controller_axes(robot, a)
-    place = robot.placement(a, frame)
     in_part = language.in_part_frame(settings)
-    if in_part:
-        place = np.linalg.inv(part) @ place
+    place = places(robot, a, frame, part if in_part else None)
     told = [f"{key}={value or 'none'}" for key, value in settings.items()]
     header = [
         *facts,
         f"Places: frame {frame or robot.tool_frame} in "
-        + ("the part's frame" if in_part else f"the robot's frame {robot.base_frame}")
+        + ("the part's frame" if in_part else places_in(robot))
         + "; the controller's tool and frame must be the same.",
         f"Joints: {convention(robot)}.",
         f"Speeds: {60e3 * feed:g} mm/min where the path says none, rapid moves {60e3 * rapid:g} "
@@ -86,6 +85,13 @@ def build(
         settings=settings,
         date=date,
     )
+
+
+def places_in(robot: Robot) -> str:
+    """The frame in which places are stated that are not in the part's, in words."""
+    if is_elsewhere(robot):
+        return f"the frame {controller_frame(robot)}, the controller's own base"
+    return f"the robot's frame {robot.base_frame}"
 
 
 def _with_pulses(language: Language, robot: Robot, given: Mapping[str, str]) -> dict[str, str]:

@@ -11,8 +11,9 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.plan import Route
-from sk120stiff.programs.building import controller_axes, convention
+from sk120stiff.programs.building import controller_axes, convention, places_in
 from sk120stiff.programs.catalogue import LANGUAGES
+from sk120stiff.programs.controller import frame_words, places
 from sk120stiff.programs.language import Language
 from sk120stiff.programs.program import Program
 from sk120stiff.robot import Robot
@@ -53,7 +54,7 @@ def route_program(
         given = {"pulses": ",".join(f"{x:.12g}" for x in robot.controller.pulses_per_degree)}
     settings = language.with_defaults(given)
     axes, slides, values = controller_axes(robot, found.a)
-    place = robot.placement(found.a)
+    place = places(robot, found.a, None)
     stops = ", ".join(
         f"{labels[pose]} at target {k}" for k, pose in enumerate(found.pose, 1) if pose >= 0
     )
@@ -66,6 +67,8 @@ def route_program(
             + ("; the others are via points." if via else "."),
             "It waits at each pose: hang on the loads, read, take them off, go on. Between targets "
             "the joints go straight; the way was held against the cell, loads and cables were not.",
+            f"Places: frame {robot.tool_frame} in {places_in(robot)}.",
+            *frame_words(robot),
             f"Joints: {convention(robot)}.",
             *language.remarks(settings),
         ),

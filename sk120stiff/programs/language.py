@@ -140,22 +140,12 @@ class Language(ABC):
         found = self.read(written)
         if found.position.shape != program.position.shape:
             raise RuntimeError(f"{self.title}: {len(found.position)} of {program.count} targets")
-        away = np.linalg.norm(found.position - program.position, axis=1).max()
+        self.hold(found, program.position, program.rotation)
         joints = np.abs(found.joints - self.axes(program)).max()
         said = np.isfinite(found.speed)
         speed = np.abs(found.speed - program.speed)[said].max(initial=0.0)
-        turned = 0.0
-        if found.rotation is not None:
-            turn = found.rotation @ np.swapaxes(program.rotation, -1, -2)
-            turned = float(np.linalg.norm(rotation_vector(turn), axis=1).max())
-        for what, size, allowed in (
-            ("position", away, POSITION),
-            ("joint", joints, ROUNDED * self.axis_step(program) + 1e-9),
-            ("orientation", turned, 2.0 * self.angle_digit),
-            ("speed", speed, ROUNDED * self.speed_digit),
-        ):
-            if not size <= allowed:
-                raise RuntimeError(f"{self.title}: a {what} is written {size:.3g} off its target")
+        self._refuse("joint", joints, ROUNDED * self.axis_step(program) + 1e-9)
+        self._refuse("speed", speed, ROUNDED * self.speed_digit)
         off = np.abs(found.speed / program.speed - 1.0)[said].max(initial=0.0)
         if off > NOTICED:
             warn(
@@ -163,6 +153,23 @@ class Language(ABC):
                 f"rounded by {100 * off:.2g} %",
                 stacklevel=3,
             )
+
+    def hold(self, found: Targets, position: Array, rotation: Array) -> None:
+        """Hold what was read against places (N, 3) [m] and (N, 3, 3).
+
+        Raises:
+            RuntimeError: They differ by more than the digits that are written.
+        """
+        away = np.linalg.norm(found.position - position, axis=1).max()
+        self._refuse("position", away, POSITION)
+        if found.rotation is not None:
+            turn = found.rotation @ np.swapaxes(rotation, -1, -2)
+            turned = np.linalg.norm(rotation_vector(turn), axis=1).max()
+            self._refuse("orientation", turned, 2.0 * self.angle_digit)
+
+    def _refuse(self, what: str, size: float, allowed: float) -> None:
+        if not size <= allowed:
+            raise RuntimeError(f"{self.title}: a {what} is written {size:.3g} off its target")
 
     def identifier(self, name: str) -> str:
         """The program's name as the language allows it."""

@@ -38,6 +38,19 @@ def part_frame(text: str) -> Array:
     return homogeneous(xyz, rotation_from_rpy(np.array([roll, pitch, yaw])))
 
 
+def place_text(T: Array) -> str:
+    """The placement (4, 4) [m] as `part_frame` reads it, in mm and deg."""
+    angles = fixed_xyz(T[None, :3, :3])[0]
+    angles = np.where(angles < -179.99999, angles + 360.0, angles)
+    said = [
+        f"{name}={round(value, 6) + 0.0:.9g} {unit}"
+        for values, unit in ((1e3 * T[:3, 3], "mm"), (angles, "deg"))
+        for name, value in zip(_PLACES[:3] if unit == "mm" else _PLACES[3:], values, strict=True)
+        if abs(value) >= 1e-6
+    ]
+    return "; ".join(said) or "x=0 mm"
+
+
 def tool_rotation(text: str) -> Array | None:
     """(3, 3) of the tool in the part's axes from roll, pitch, yaw; None for the word ``free``."""
     if text.strip().lower() == "free":

@@ -61,11 +61,13 @@ class ControllerRule(Strict):
     """How the controller counts: its axes as linear expressions of the joints, and motor pulses.
 
     ``axes: {A1: -joint_1, A2: joint_2 - 90 deg}``; pulses per degree, per mm of a slide, in their
-    order. Without the key the axes are the actuated joints.
+    order. Without the key the axes are the actuated joints. `frame` is the link in whose axes it
+    states places; by default ``base``, where the URDF has it beside ``base_link``.
     """
 
     axes: dict[str, str] = Field(default_factory=dict)
     pulses_per_degree: tuple[float, ...] = ()
+    frame: str | None = None
 
 
 class RobotDescription(Strict):

@@ -24,6 +24,7 @@ from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
 from sk120stiff.plan import Cell, Plan, as_measured, lowest_points, plan, plan_positions
+from sk120stiff.programs.controller import checked_text, frame_words
 from sk120stiff.programs.driving import language_by_joints, route_program
 from sk120stiff.units import parse_size, parse_values
 from sk120stiff.workspace import places_of
@@ -175,7 +176,8 @@ def command(
     way: dict[str, object] | None = None
     if language is not None and program is not None and made.way is not None:
         driven = route_program(language, program.stem, start.robot, made.way, made.poses)
-        write_atomically(program, language.text(driven))
+        write_atomically(program, checked_text(language, driven, start.robot, made.way.a))
+        said.extend(frame_words(start.robot))
         way = {
             "order": made.poses,
             "via_points": int((made.way.pose < 0).sum()),
