@@ -30,6 +30,8 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
     found = outcome.document
     assert {row["payload_kg"] for row in found["poses"]} <= {0.0, 80.0}
     assert found["remarks"][-1] == "Payloads are 0 kg and 80 kg (--payload)."
+    assert "from pose to pose were not checked for collisions" in found["remarks"][-2]
+    assert f"--check {plan}" in found["remarks"][-2] and "--program FILE" in found["remarks"][-2]
     assert len(found["poses"]) == 60 and found["sigma_um"] == pytest.approx(20.0)
     assert "sigma: 20" in Path(plan).with_suffix(".yaml").read_text()
     assert 1.0 < found["foretold_um"] < 40.0 and found["gain"] > 1.0

@@ -179,5 +179,6 @@ def points_of(known: Measurements | None, text: str | None) -> tuple[Array, Arra
         values = parse_values(text, "length", where="--point", like="0,50,120 mm")
         return values, values
     if known is not None:
-        return known.point, known.force_point
+        at = known.point if known.absolute is None else known.absolute.point[0]
+        return at, known.force_point
     return np.zeros(3), np.zeros(3)

@@ -200,6 +200,12 @@ def command(
     floor = made.cell.floor
     heights = lowest_points(start.robot, made.joints, at, made.cell)
     remarks = [*made.remarks]
+    if made.way is None and len(made.poses) > 1:
+        remarks.append(
+            "The straight ways from pose to pose were not checked for collisions: 'sk120stiff plan "
+            f"--check {out or 'plan.csv'}' does, and --program FILE finds an order and ways that "
+            "are free."
+        )
     if "payloads" in hung:
         remarks.append(masses_understood(hung["payloads"]))
     document |= {

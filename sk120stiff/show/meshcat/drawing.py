@@ -237,7 +237,9 @@ class InMeshcat:
         for each in self._scene.poses:
             if np.allclose(each.a, pose, rtol=0.0, atol=1e-9):
                 for reading in each.readings:
-                    if np.allclose(reading.wrench, load, rtol=1e-9, atol=1e-9):
+                    point = self.point if reading.point is None else reading.point
+                    same = np.allclose(point, self.point, rtol=0.0, atol=1e-9)
+                    if same and np.allclose(reading.wrench, load, rtol=1e-9, atol=1e-9):
                         return reading
         return None
 

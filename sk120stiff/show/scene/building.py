@@ -14,6 +14,7 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.show.scene.elastic import Elastic
 from sk120stiff.show.scene.scene import Reading, Scene, ScenePose
+from sk120stiff.show.wording import number
 
 if TYPE_CHECKING:
     from sk120stiff.effects import Effect, LoadCases
@@ -56,33 +57,48 @@ def scene_of_model(
     robot = model.robot
     shown = {"model": model} if models is None else dict(models)
     poses = poses_of(robot, data, shown) if data is not None else ()
+    point = None if data is None else _first_point(poses, data)
     if a is None and wrench is None and named:
-        a, wrench = _widest_gap(poses)
+        a, wrench, point = _widest_gap(poses) or (a, wrench, point)
     scene = Scene(
         robot=robot,
         elastic=Elastic.of_model(model, label=label),
         poses=poses,
         title=title,
         subtitle=subtitle,
-        point=np.zeros(3) if data is None else np.asarray(data.point, dtype=float),
+        point=np.zeros(3) if point is None else np.asarray(point, dtype=float),
         a=None if a is None else np.asarray(a, dtype=float),
         wrench=None if wrench is None else np.asarray(wrench, dtype=float),
         robot_argument=robot.source,
         model_argument=os.fspath(model_file),
+        positions=data is not None and _of_positions(data),
     )
     return replace(scene, marks=_marks(scene.tree, named))
 
 
-def _widest_gap(poses: Sequence[ScenePose]) -> tuple[Array | None, Array | None]:
-    """Pose and load of the reading that the first model misses most; None where none is told."""
+def _of_positions(data: Measurements) -> bool:
+    """Is what was read where a point stands, and not how far a load moved it?"""
+    return data.absolute is not None and data.absolute.channels.displacement is None
+
+
+def _first_point(poses: Sequence[ScenePose], data: Measurements) -> Array:
+    """(3,) the point of the first reading, in the tool frame [m]."""
+    points = [r.point for pose in poses for r in pose.readings if r.point is not None]
+    return points[0] if points else np.asarray(data.point)
+
+
+def _widest_gap(poses: Sequence[ScenePose]) -> tuple[Array, Array, Array | None] | None:
+    """Pose, load and point of the reading that the first model misses most; None of none."""
     gaps = [
-        (float(np.linalg.norm(r.measured - next(iter(r.predicted.values())))), pose.a, r.wrench)
+        (float(np.linalg.norm(r.measured - next(iter(r.predicted.values())))), (pose.a, r))
         for pose in poses
         for r in pose.readings
         if r.measured is not None and r.predicted
     ]
-    _, a, wrench = max(gaps, key=lambda gap: gap[0], default=(0.0, None, None))
-    return a, wrench
+    if not gaps:
+        return None
+    _, (a, reading) = max(gaps, key=lambda gap: gap[0])
+    return a, reading.wrench, reading.point
 
 
 def _marks(tree: LinkTree, effects: Sequence[Effect]) -> dict[str, str]:
@@ -127,7 +143,8 @@ def poses_of(
     read: Mask = np.zeros(used.n_readings, dtype=np.bool_)
     if measured is not None:
         read |= np.isfinite(measured).all(axis=1)
-    wrench = _at_point(load_cases)
+    wrench, said = _at_point(load_cases), _said(used)
+    points = np.broadcast_to(load_cases.point, (load_cases.count, 3))
     poses = []
     for k, pose in enumerate(load_cases.poses):
         rows = np.flatnonzero(load_cases.pose == k)
@@ -136,12 +153,34 @@ def poses_of(
                 wrench=wrench[row],
                 measured=measured[row] if measured is not None and read[row] else None,
                 predicted={name: values[row] for name, values in predicted.items()},
-                label=f"reading {number + 1}",
+                label=f"reading {count}",
+                point=points[row],
+                said=said[row],
             )
-            for number, row in enumerate(rows)
+            for count, row in enumerate(rows, start=1)
         )
         poses.append(ScenePose(f"pose {pose}", load_cases.a[rows[0]], readings))
     return tuple(poses)
+
+
+def _said(used: Measurements) -> list[str | None]:
+    """What hung at each of N rows, which force pulled and which marker was read, in words.
+
+    Only what differs from nothing: an empty word where no row has a load and there is one marker;
+    None of displacements under forces, whose size says enough.
+    """
+    told = used.absolute
+    if told is None:
+        return [None] * used.n_readings
+    force = np.linalg.norm(used.wrench[:, :3], axis=1)
+    columns = []
+    if told.payload.any():
+        columns.append([f"{number(mass)} kg" for mass in told.payload.tolist()])
+    if force.any():
+        columns.append([f"{number(size, 3)} N" for size in force.tolist()])
+    if len(set(told.markers)) > 1:
+        columns.append([f"marker {name}" for name in told.markers])
+    return [", ".join(column[row] for column in columns) for row in range(used.n_readings)]
 
 
 def _off_the_last(

@@ -50,8 +50,10 @@ def scene_payload(scene: Scene, *, live: bool = False) -> dict[str, Any]:
         "path": None if scene.path is None else scene.path.payload(),
         "meshes": [_mesh(mesh) for mesh in meshes],
         "kinematics": None if live else serialised(scene),
-        "poses": [_pose(pose) for pose in scene.poses],
+        "poses": [_pose(pose, scene.point) for pose in scene.poses],
         "models": list(scene.models),
+        "positions": scene.positions,
+        "listed": scene.listed,
         "start": {
             "a": _list(scene.first_pose),
             "wrench": _list(scene.first_load),
@@ -133,10 +135,11 @@ def limits_of(scene: Scene) -> dict[str, Any]:
     largest = np.max(np.abs([scene.first_load, *loads]), axis=0)
     force, moment = float(largest[:3].max()), float(largest[3:].max())
     reach = reach_of(scene.robot, scene.frame)
+    read = [r.point for pose in scene.poses for r in pose.readings if r.point is not None]
     return {
         "force": max(_round_up(1.2 * force), 100.0) if force else DEFAULT_LOAD,
         "moment": max(_round_up(1.2 * moment), 100.0) if moment else DEFAULT_LOAD,
-        "point": max(0.25 * reach, 1.2 * float(np.max(np.abs(scene.point)))),
+        "point": max(0.25 * reach, 1.2 * float(np.max(np.abs([scene.point, *read])))),
         "exaggeration": list(EXAGGERATION),
     }
 
@@ -213,18 +216,20 @@ def _round_up(value: float) -> float:
     return float(next(step * power for step in (1, 2, 5, 10) if step * power >= value * 0.999999))
 
 
-def _pose(pose: ScenePose) -> dict[str, Any]:
+def _pose(pose: ScenePose, point: Array) -> dict[str, Any]:
     return {
         "label": pose.label,
         "a": _list(np.asarray(pose.a, dtype=float)),
-        "readings": [_reading(reading, k) for k, reading in enumerate(pose.readings)],
+        "readings": [_reading(reading, k, point) for k, reading in enumerate(pose.readings)],
     }
 
 
-def _reading(reading: Reading, k: int) -> dict[str, Any]:
+def _reading(reading: Reading, k: int, point: Array) -> dict[str, Any]:
     return {
         "label": reading.label or f"reading {k + 1}",
+        "said": reading.said,
         "wrench": _list(np.asarray(reading.wrench, dtype=float)),
+        "point": _list(np.asarray(point if reading.point is None else reading.point, dtype=float)),
         "measured": None
         if reading.measured is None
         else _list(np.asarray(reading.measured, dtype=float)),

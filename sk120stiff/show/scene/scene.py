@@ -29,12 +29,16 @@ class Reading:
         measured: (3,) displacement of the point, base axes [m], or None.
         predicted: Model name → (3,) displacement [m]; the order is before, after, ...
         label: What the reading is called; its number else.
+        point: (3,) the point that was read, in the frame of the scene's point [m]; that one else.
+        said: What hung there and which marker was read; None: the size of the force says enough.
     """
 
     wrench: Array
     measured: Array | None = None
     predicted: Mapping[str, Array] = field(default_factory=dict)
     label: str = ""
+    point: Array | None = None
+    said: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +67,9 @@ class Scene:
             of the effects that an explanation added.
         surroundings: What stands around the arm or hangs on it, on links of `tree`.
         path: What the tool passes, drawn with the freedom that was searched; None for none.
+        positions: What was measured is where the point stands, told from where the last of the
+            models has it, and not how far a load moved it.
+        listed: What the poses are of, in a word: data, plan.
         robot_argument, model_argument: How a command line names robot and model, for "copy as
             command".
     """
@@ -79,6 +86,8 @@ class Scene:
     marks: Mapping[str, str] = field(default_factory=dict)
     surroundings: Sequence[Body] = ()
     path: ScenePath | None = None
+    positions: bool = False
+    listed: str = "data"
     robot_argument: str = ""
     model_argument: str = ""
 
@@ -97,6 +106,8 @@ class Scene:
             _check(f"pose {pose.label!r}", pose.a, n)
             for reading in pose.readings:
                 _check(f"a load of pose {pose.label!r}", reading.wrench, 6)
+                if reading.point is not None:
+                    _check(f"the point of pose {pose.label!r}", reading.point, 3)
                 shown = [reading.measured, *reading.predicted.values()]
                 for values in shown:
                     if values is not None:
@@ -129,7 +140,8 @@ class Scene:
         if self.wrench is not None:
             return np.asarray(self.wrench, dtype=float)
         if self.poses and self.poses[0].readings:
-            return np.asarray(self.poses[0].readings[-1].wrench, dtype=float)
+            first = 0 if self.positions else -1  # the largest pull comes last
+            return np.asarray(self.poses[0].readings[first].wrench, dtype=float)
         return np.zeros(6)
 
     def _repr_html_(self) -> str:

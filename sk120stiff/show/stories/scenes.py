@@ -18,6 +18,12 @@ from sk120stiff.show.scene.building import scene_of_model
 from sk120stiff.show.scene.scene import Scene, ScenePath
 from sk120stiff.show.scene.surroundings import surroundings_of
 from sk120stiff.show.stories.pictures import ArmView
+from sk120stiff.show.wording import counted, number
+
+UNCHECKED = (
+    "The straight ways from pose to pose were not checked for collisions: 'sk120stiff plan "
+    "--check' of the written plan does, and 'plan --program' finds ways that are free."
+)
 
 
 def models_of(answer: Explanation) -> dict[str, Model]:
@@ -57,23 +63,41 @@ def identify_scene(
 def plan_scene(model: Model, plan: Measurements, cell: Cell, driven: Route | None = None) -> Scene:
     """The arm at every pose of a plan, in its order, with the loads there and what stands around.
 
-    The point's way between the poses is that of joints that go straight, by the via points of
-    `driven` where there are any.
+    The point's way between the poses, of several markers that of the first, is that of joints that
+    go straight, by the via points of `driven` where there are any.
     """
-    said = f"{len(plan.poses)} poses in their order, {plan.n_readings} loads"
+    said = f"{counted(len(plan.poses), 'pose')} in their order, {_loads(plan)}"
     if cell.source:
         said += f"; around it what {Path(cell.source).name} states"
+    if driven is None and len(plan.poses) > 1:
+        said += f". {UNCHECKED}"
     scene = scene_of_model(model, plan, title=f"{model.robot.name}: plan", subtitle=said)
     stands = np.array([pose.a for pose in scene.poses]) if driven is None else driven.a
     a, reached = straight_on(model.robot, stands)
     planned = np.ones(len(stands), dtype=bool) if driven is None else driven.pose >= 0
-    at = model.robot.screws(a, point=plan.point).position
+    at = model.robot.screws(a, point=scene.point).position
+    point = "point" if plan.absolute is None else f"marker {plan.absolute.markers[0]}".rstrip()
     path = ScenePath(
-        at, at, 0, said=f"first: {plan.poses[0]}", freedom="", mark="the first pose's point",
+        at, at, 0, said=f"first: {plan.poses[0]}", freedom="", mark=f"the first pose's {point}",
         stops=tuple(int(k) for k in reached[planned]),
     )  # fmt: skip
     around = surroundings_of(cell, model.robot, scene.tree)
-    return replace(scene, path=path, surroundings=around)
+    return replace(scene, path=path, surroundings=around, listed="plan")
+
+
+def _loads(plan: Measurements) -> str:
+    """What acts at the poses, and on which markers: a payload counts once, whoever reads it."""
+    told = plan.absolute
+    if told is None:
+        return counted(plan.n_readings, "load")
+    masses = [f"{number(mass)} kg" for mass in sorted(set(told.payload.tolist()))]
+    names = list(dict.fromkeys(told.markers))
+    said = "no payload"
+    if len(masses) > 1:
+        said = f"{len(masses)} payloads ({', '.join(masses)})"
+    elif told.payload.any():
+        said = f"payload {masses[0]}"
+    return f"{said}, {len(names)} markers ({', '.join(names)})" if len(names) > 1 else said
 
 
 def largest_loads(load_cases: LoadCases) -> dict[str, int]:

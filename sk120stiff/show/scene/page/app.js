@@ -13,7 +13,7 @@ SK.start = (scene) => {
   };
   const same = (a, b) => a.every((value, k) => Math.abs(value - b[k]) < 1e-12);
   state.pose = poses.findIndex((pose) => same(pose.a, state.a));
-  if (state.pose >= 0) state.reading = poses[state.pose].readings.findIndex((reading) => same(reading.wrench, state.wrench));
+  if (state.pose >= 0) state.reading = poses[state.pose].readings.findIndex((reading) => same(reading.wrench, state.wrench) && same(reading.point, state.point));
 
   const ellipsoids = {
     enhanced: actors.makeEllipsoid("enhanced", colours.enhanced, true),
@@ -85,9 +85,9 @@ SK.start = (scene) => {
     }
     const reading = currentReading(), factor = state.exaggeration;
     if (reading && state.show.displacements) {
-      const predicted = reading.predicted[state.model];
-      if (reading.measured) arrows.measured.set(from, m.scaled(reading.measured, factor));
-      if (predicted) arrows.predicted.set(from, m.scaled(predicted, factor));
+      const predicted = reading.predicted[state.model], moved = !scene.positions; // else only the gap is a way
+      if (moved && reading.measured) arrows.measured.set(from, m.scaled(reading.measured, factor));
+      if (moved && predicted) arrows.predicted.set(from, m.scaled(predicted, factor));
       const first = reading.predicted[scene.models[0]];
       const gap = (arrow, model, name) => {
         const vector = m.minus(reading.measured, model);
@@ -131,9 +131,10 @@ SK.start = (scene) => {
     const times = `\u00d7 ${Number(state.exaggeration.toPrecision(3))}`;
     if (state.show.deflected && m.norm(state.wrench) > 0) rows.push(entry("deflected", frame.deflected ? `deflected shape, ${times}` : "no equilibrium: beyond the critical load"));
     const reading = currentReading(), predicted = `predicted, ${state.model}`;
-    if (reading && !reading.measured && state.model && state.show.displacements) rows.push(entry("predicted", `${predicted}, ${times}`));
+    if (reading && !reading.measured && state.model && !scene.positions && state.show.displacements) rows.push(entry("predicted", `${predicted}, ${times}`));
     if (reading && reading.measured && state.show.displacements)
-      rows.push(entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", predicted), entry("gap", `gap, \u00d7 ${Number(scale.gap.toPrecision(3))}`)] : []),
+      rows.push(...(scene.positions ? [] : [entry("measured", `measured, ${times}`), ...(state.model ? [entry("predicted", predicted)] : [])]),
+        ...(state.model ? [entry("gap", `gap${scene.positions ? " of position" : ""}, \u00d7 ${Number(scale.gap.toPrecision(3))}`)] : []),
         ...(scene.models.length > 1 && state.model !== scene.models[0] ? [entry("before", `gap ${scene.models[0]}, the same scale`)] : []));
     if (scene.marks.length) rows.push(entry("named", "where what was named acts"));
     if (path) rows.push(...path.legend.map((row) => entry(...row)));
@@ -165,6 +166,8 @@ SK.start = (scene) => {
   }
   const stop = () => { clearTimeout(timer); timer = 0; panel.playing(false); };
 
+  const takeUp = ({ wrench, point }) => Object.assign(state, { wrench: wrench.slice(), point: point.slice() });
+
   const actions = {
     changed, redraw,
     leavePose() { flight++; gliding = false; stop(); state.pose = -1; state.reading = -1; panel.refresh(); changed(); },
@@ -172,15 +175,16 @@ SK.start = (scene) => {
     goToPose(k) {
       state.pose = k;
       const { readings } = poses[k];
-      state.reading = readings.length ? Math.min(state.reading < 0 ? readings.length - 1 : state.reading, readings.length - 1) : -1;
-      if (state.reading >= 0) state.wrench = readings[state.reading].wrench.slice();
+      const usual = scene.positions ? 0 : readings.length - 1;
+      state.reading = readings.length ? Math.min(state.reading < 0 ? usual : state.reading, readings.length - 1) : -1;
       state.point = scene.start.point.slice();
+      if (state.reading >= 0) takeUp(readings[state.reading]);
       glide(poses[k].a);
     },
     goToReading(k) {
       if (k < 0) { actions.leaveReading(); return; }
       state.reading = k;
-      state.wrench = poses[state.pose].readings[k].wrench.slice();
+      takeUp(poses[state.pose].readings[k]);
       panel.refresh();
       changed();
     },

@@ -15,7 +15,7 @@ SK.makePanel = (scene, state, actions) => {
   const poseList = poses.length ? [
     element("div", { class: "row" },
       keep(select({
-        label: "Pose of the data",
+        label: `Pose of the ${scene.listed}`,
         options: [["-1", "free"], ...poses.map((pose, k) => [String(k), pose.label])],
         read: () => state.pose, write: (value) => { if (Number(value) >= 0) actions.goToPose(Number(value)); },
       })),
@@ -34,9 +34,10 @@ SK.makePanel = (scene, state, actions) => {
   controls.push(readings);
   function refreshReadings() {
     const known = state.pose >= 0 ? poses[state.pose].readings : [];
-    readings.row.hidden = !known.length;
+    const words = ({ said, wrench }) => said ?? `${SK.words.number(SK.algebra.norm(wrench.slice(0, 3)), 3)} N`;
+    readings.row.hidden = !known.length || (known.length === 1 && words(known[0]) === "");
     readings.menu.replaceChildren(element("option", { value: "-1" }, "free"),
-      ...known.map((reading, k) => element("option", { value: String(k) }, `${reading.label}: ${SK.words.number(SK.algebra.norm(reading.wrench.slice(0, 3)), 3)} N`)));
+      ...known.map((reading, k) => element("option", { value: String(k) }, [reading.label, words(reading)].filter(Boolean).join(": "))));
   }
 
   const largest = (k) => (k < 3 ? limits.force : limits.moment);

@@ -33,7 +33,7 @@ SK.makeReadouts = (scene, state) => {
 
   // A reading has more in it than the arm: what instruments add, and loads that were on before.
   function asRead(rest, current) {
-    const predicted = current && state.model === scene.models[scene.models.length - 1] && current.predicted[state.model];
+    const predicted = current && !scene.positions && state.model === scene.models[scene.models.length - 1] && current.predicted[state.model];
     if (!predicted || size(SK.algebra.minus(predicted, rest)) < 1e-3 * size(predicted)) return "";
     return `; as read ${number(1e6 * size(predicted), 4)} µm, with what instruments and earlier loads add`;
   }
@@ -44,7 +44,7 @@ SK.makeReadouts = (scene, state) => {
     facts.replaceChildren();
     if (loaded) {
       facts.append(...(rest
-        ? fact("Deflection", `${number(1e6 * size(rest), 4)} µm`, `${vector(rest)} µm${asRead(rest, current)}`)
+        ? fact("Deflection", `${number(1e6 * size(rest), 4)} µm`, `${current && current.said ? `${current.said}: ` : ""}${vector(rest)} µm${asRead(rest, current)}`)
         : fact("Deflection", "none", "no equilibrium: the load is beyond the critical one")));
       const off = (name) => (rest && frame.deflection[name] ? `${number(1e6 * size(SK.algebra.minus(frame.deflection[name], rest)), 2)} µm off` : "\u2013");
       rows.push(...fact(element("span", {}, "One step, with ", K_C()), off("enhanced")), ...fact("One step, without", off("conventional")));
@@ -61,18 +61,27 @@ SK.makeReadouts = (scene, state) => {
   }
 
   function reading(current) {
-    if (!current) { data.replaceChildren(); return; }
-    const models = Object.entries(current.predicted), row = (name, d, mark) => element("tr", {},
+    const models = current ? Object.entries(current.predicted) : [];
+    if (!models.length && !(current && current.measured)) { data.replaceChildren(); return; }
+    const row = (name, d, mark) => element("tr", {},
       element("th", { scope: "row" }, element("i", { class: "dot " + mark }), name),
       ...(d ? [...d, size(d)].map((value) => element("td", {}, number(Math.abs(value) < 1e-12 ? 0 : 1e6 * value, 3))) : [element("td", { colspan: 4 }, "\u2013")]));
-    const rows = [row("measured", current.measured, "measured")];
-    for (const [name, predicted] of models) {
-      const mark = name === state.model ? "predicted" : "other";
-      rows.push(row(name, predicted, mark));
-      if (current.measured) rows.push(row("gap", SK.algebra.minus(current.measured, predicted), name === state.model ? "gap" : "other"));
+    const rows = [], other = (name, mark) => (name === state.model ? mark : "other");
+    const gap = (name, said) => rows.push(row(said, SK.algebra.minus(current.measured, current.predicted[name]), other(name, "gap")));
+    if (scene.positions) {
+      // Where the last model has the point is no displacement: only what it is off by is told.
+      if (current.measured) models.forEach(([name]) => gap(name, models.length > 1 ? `gap, ${name}` : "gap"));
+    } else {
+      if (current.measured || scene.listed === "data") rows.push(row("measured", current.measured, "measured"));
+      for (const [name, predicted] of models) {
+        rows.push(row(name, predicted, other(name, "predicted")));
+        if (current.measured) gap(name, "gap");
+      }
     }
+    if (!rows.length) { data.replaceChildren(); return; }
+    const caption = scene.positions ? `Position at ${current.label}, as read less what the model says` : `Displacement at ${current.label}`;
     data.replaceChildren(element("table", { class: "numbers" },
-      element("caption", {}, `Displacement at ${current.label}, µm`),
+      element("caption", {}, `${caption}, µm`),
       element("thead", {}, element("tr", {}, ...["", "x", "y", "z", "size"].map((text, k) => element("th", { scope: "col", class: k ? "" : "first" }, text)))),
       element("tbody", {}, ...rows)));
   }
