@@ -215,6 +215,13 @@ def test_a_value_that_cannot_be_seen_spoils_no_picture(value, std, words) -> Non
     assert high - low < 0.5  # what is hardly known does not squeeze what is known
 
 
+def test_a_ratio_begins_at_nothing_where_none_is_negative() -> None:
+    far = f.Estimate("joint_1", 4.0e6, 2.0e5, "N·m/rad", 1.0e6)
+    other = f.Estimate("offset", -2e-4, 1e-5, "rad", 1e-4)
+    assert f.parameter_forest([far]).axes[0].get_xlim()[0] == 0.0
+    assert f.parameter_forest([far, other]).axes[0].get_xlim()[0] < -2.0
+
+
 def test_candidates_stand_in_the_order_of_their_scores() -> None:
     figure = score_bars({"b": 4.0, "none of them": 250.0, "a": 0.0}, named=["a"])
     (panel,) = figure.axes

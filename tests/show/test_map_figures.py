@@ -5,6 +5,7 @@ import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.show import figures_of_map
+from sk120stiff.show.figures import stiffness_slice
 
 xarray = pytest.importorskip("xarray")
 
@@ -77,3 +78,23 @@ def test_bad_questions_are_refused() -> None:
         figures_of_map(made(values()).isel(slide=[0], wrist=[0]))
     with pytest.raises(InputError, match="no point"):
         figures_of_map(made(np.full((1, 3, 2, 4), np.nan)))
+
+
+def test_what_lies_beyond_the_scale_is_marked_and_told() -> None:
+    x, y = np.linspace(0.4, 1.2, 9), np.linspace(0.0, 0.8, 8)
+    bent = np.linspace(2e-4, 2.4e-3, 72).reshape(8, 9)
+    asked = {"x_label": "x", "y_label": "z", "units": ("mm", "mm"), "scale": 1e6}
+    even = stiffness_slice(x, y, np.full((8, 9), 1e-3), value_label="deflection [µm]", **asked)
+    assert even.axes[1].get_ylabel() == "deflection [µm]"
+    bent[-1, -1] = 2.7773e-3
+    figure = stiffness_slice(x, y, bent, value_label="deflection [µm]", **asked)
+    figure.canvas.draw()
+    bar = figure.axes[1]
+    assert bar.get_ylabel() == "deflection [µm]; top 2 %: to 2777"
+    drawn = figure.axes[0].collections[0]
+    assert drawn.extend == "max"
+    beyond, end = (np.array(drawn.cmap(value)[:3]) for value in (1.5, 1.0))
+    assert np.abs(beyond - end).max() > 0.1
+    told = [text.get_text() for text in (*bar.get_yticklabels(), *figure.axes[0].texts)]
+    assert any(len(text) == 4 and text.isdigit() for text in told)
+    assert not any("e+" in text for text in told)

@@ -11,7 +11,7 @@ import pytest
 
 from sk120stiff.effects import effect
 from sk120stiff.errors import listed
-from sk120stiff.explain import Explanation, Finding, explain
+from sk120stiff.explain import Detectable, Explanation, Finding, explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.absorbed import absorbed
 from sk120stiff.explain.findings import Contender
@@ -19,7 +19,12 @@ from sk120stiff.identify import LackOfFit
 from sk120stiff.model import base_model
 from sk120stiff.robot import load_robot
 from sk120stiff.show import scene_html
-from sk120stiff.show.stories import explain_report, explain_scene
+from sk120stiff.show.stories import (
+    explain_report,
+    explain_scene,
+    limits_section,
+    sizes_sections,
+)
 from sk120stiff.show.stories.explain_report import _left
 from sk120stiff.show.stories.pictures import ArmView, exaggeration, gap_vectors, suspect_panels
 from sk120stiff.show.stories.verdicts import lead_of, title_of
@@ -154,6 +159,21 @@ def test_springs_before_and_after_are_told() -> None:
             assert said_as(old.value, old.std, p.spec.unit).rpartition(" ")[0] in text
             assert said_as(p.value, p.std, p.spec.unit).rpartition(" ")[0] in text
     assert "Springs fitted alone cover up for what is missing" in text
+
+
+def test_a_spring_that_came_out_at_a_quarter_is_75_percent_too_soft() -> None:
+    after = [SimpleNamespace(name="a", value=11.76), SimpleNamespace(name="b", value=3.0)]
+    for p in after:
+        p.effect = SimpleNamespace(where=p.name, joint_spring=True)
+    before = {"a": SimpleNamespace(value=2.94), "b": SimpleNamespace(value=12.0)}
+    told = sizes_sections._told(before, after)
+    assert "too soft: a 75 %; too stiff: b 300 %" in told
+
+
+def test_a_size_without_a_unit_has_no_blank_behind_it() -> None:
+    sizes = [Detectable(f"gain.scale_{axis}", 0.0043, "1") for axis in "xy"]
+    assert limits_section._written(sizes) == "scale_x 0.0043, scale_y 0.0043"
+    assert limits_section._written(4 * sizes) == "0.0043 to 0.0043"
 
 
 def test_an_open_question_names_both_and_what_to_measure() -> None:

@@ -70,7 +70,10 @@ def parameter_forest(
             panel.annotate(_written(e), (1.02, k), xycoords=("axes fraction", "data"),
                            va="center", fontsize=8.5)  # fmt: skip
         reach = 1.15 * (_reach(centre[seen], spread[seen]) or 0.1)
-        panel.set_xlim(1.0 - reach, 1.0 + reach)
+        low = 1.0 - reach
+        if (centre[seen] >= 0.0).all():  # a ratio that nothing makes negative begins at none
+            low = max(low, 0.0)
+        panel.set_xlim(low, 1.0 + reach)
         panel.set_xlabel(
             f"value / {reference_name}, ±2 standard errors"
             if compared

@@ -11,9 +11,19 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.show import palette
 from sk120stiff.show.figures.style import FROM_SI, new_figure, soft_to_stiff, styled
+from sk120stiff.show.wording import number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+STEPS = 14  # colours of a scale
+DARKER = 0.55  # than the end of the scale: what lies beyond it
+
+
+def written(value: float, _: object = None) -> str:
+    """A value at a line or a bar: 2523, not 2.52e+03."""
+    return number(value, 3)
 
 
 def stiffness_slice(
@@ -32,6 +42,9 @@ def stiffness_slice(
 ) -> Figure:
     """A quantity over two joint values or two positions, as filled contours.
 
+    Where the largest 2 % go far beyond the others the scale ends before them: they have a colour of
+    their own, and the bar says how far they go.
+
     Args:
         x, y: (nx,), (ny,) joint values [rad] or positions [m].
         values: (ny, nx) quantity in SI, e.g. the least principal stiffness [N/m]; NaN stays white.
@@ -48,20 +61,26 @@ def stiffness_slice(
     finite = shown[np.isfinite(shown)]
     top = float(np.quantile(finite, 0.98)) if finite.size else 1.0
     low = float(finite.min()) if finite.size else 0.0
+    most = float(finite.max()) if finite.size else top
+    beyond = most - top > (top - low) / STEPS  # else the scale may as well go all the way
+    top = top if beyond else most
     top = top if top > low else low + 1.0
     with styled():
         from matplotlib.patheffects import withStroke
+        from matplotlib.ticker import FuncFormatter
 
         figure = new_figure(3.9, width=5.4)
         panel = figure.subplots()
-        cmap = soft_to_stiff() if low_is_soft else soft_to_stiff().reversed()
-        levels = np.linspace(low, top, 15)
-        drawn = panel.contourf(x, y, np.clip(shown, None, top), levels=levels, cmap=cmap)
+        scheme = soft_to_stiff() if low_is_soft else soft_to_stiff().reversed()
+        cmap = scheme.with_extremes(over=tuple(DARKER * np.array(scheme(1.0)[:3])))
+        levels = np.linspace(low, top, STEPS + 1)
+        drawn = panel.contourf(
+            x, y, shown, levels=levels, cmap=cmap, extend="max" if beyond else "neither"
+        )
         lines = panel.contour(
-            x, y, np.clip(shown, None, top), levels=levels[2:-1:3],
-            colors="white", linewidths=0.6,
+            x, y, shown, levels=levels[2:-1:3], colors="white", linewidths=0.6,
         )  # fmt: skip
-        panel.clabel(lines, fontsize=7, fmt="%.3g")
+        panel.clabel(lines, fontsize=7, fmt=written)
         panel.grid(visible=False)
         for label, mark in (marks or {}).items():
             place = (FROM_SI[units[0]] * mark[0], FROM_SI[units[1]] * mark[1])
@@ -77,7 +96,8 @@ def stiffness_slice(
             )  # fmt: skip
         panel.set_xlabel(f"{x_label} [{units[0]}]")
         panel.set_ylabel(f"{y_label} [{units[1]}]")
-        bar = figure.colorbar(drawn, ax=panel, label=value_label, format="%.3g")
+        told = f"{value_label}; top 2 %: to {written(most)}" if beyond else value_label
+        bar = figure.colorbar(drawn, ax=panel, label=told, format=FuncFormatter(written))
         bar.outline.set_visible(False)
         if title:
             panel.set_title(title)

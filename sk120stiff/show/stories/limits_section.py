@@ -118,13 +118,19 @@ def _written(items: Sequence[Detectable]) -> str:
     if len(items) > 6:  # a constant for every pose, say: the range tells enough
         values = [float(item.value or 0.0) for item in items]
         factor, unit = said_in(items[0].unit, max(values))
-        return f"{number(factor * min(values), 3)} to {number(factor * max(values), 3)} {unit}"
+        return _with(
+            f"{number(factor * min(values), 3)} to {number(factor * max(values), 3)}", unit
+        )
     return ", ".join(f"{item.name.rpartition('.')[2]} {_said(item)}" for item in items)
 
 
 def _said(item: Detectable) -> str:
     factor, unit = said_in(item.unit, float(item.value or 0.0))
-    return f"{number(factor * float(item.value or 0.0), 3)} {unit}"
+    return _with(number(factor * float(item.value or 0.0), 3), unit)
+
+
+def _with(text: str, unit: str) -> str:
+    return f"{text} {unit}" if unit else text
 
 
 def next_section(answer: Explanation, link: str) -> Section | None:

@@ -69,16 +69,17 @@ def springs_table(fit: Fit) -> Table:
 
 
 def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
-    bent = [(p, p.value / before[p.name].value - 1.0) for p in after]
-    bent = [(p, change) for p, change in bent if np.isfinite(change)]
+    # of what they are with the effect: 3 for 12 is 75 % too soft, 12 for 3 is 300 % too stiff
+    bent = [(p, before[p.name].value / p.value - 1.0) for p in after if p.value]
+    bent = [(p, off) for p, off in bent if np.isfinite(off)]
     worth = sorted((b for b in bent if abs(b[1]) > WORTH_TELLING), key=lambda b: -abs(b[1]))
     if not worth:
         return (
             "The missing effect had hardly bent the springs: none changes by more than "
             f"{percent(WORTH_TELLING)}. A spring fit alone would not have betrayed it."
         )
-    soft = [f"{_short(p)} {percent(change)}" for p, change in worth if change > 0.0]
-    stiff = [f"{_short(p)} {percent(-change)}" for p, change in worth if change < 0.0]
+    soft = [f"{_short(p)} {percent(-off)}" for p, off in worth if off < 0.0]
+    stiff = [f"{_short(p)} {percent(off)}" for p, off in worth if off > 0.0]
     said = []
     if soft:
         said.append(f"too soft: {listed(soft)}")
