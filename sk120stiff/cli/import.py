@@ -52,6 +52,13 @@ class Axes(StrEnum):
     instrument = "instrument"
 
 
+class TakenAs(StrEnum):
+    """What positions of a pose under several loads become."""
+
+    positions = "positions"
+    displacements = "displacements"
+
+
 class Dates(StrEnum):
     """What comes first in dates like 10/09/2026."""
 
@@ -73,11 +80,13 @@ def command(
     forces: Axes | None = None,
     wrench: str | None = None,
     payload: list[str] | None = None,
+    payload_point: str | None = None,
     coverage: Annotated[float | None, typer.Option(min=0.1)] = None,
     dates: Dates | None = None,
     point: list[str] | None = None,
     joints: str | None = None,
     columns: str | None = None,
+    taken_as: Annotated[TakenAs | None, typer.Option("--as")] = None,
     register: Annotated[bool | None, typer.Option("--register/--no-register")] = None,
     format_name: Annotated[str | None, typer.Option("--format")] = None,
     marker: str | None = None,
@@ -118,6 +127,9 @@ def command(
             or '10 lb', one mass ('0,5 kg' is 0.5 kg); of several files each by its name, 'a.csv=5
             kg', or '*_b.csv=5 kg'. [default: where names of files or lines above the tables say
             one mass, that]
+        payload_point (VALUES): Where the centre of the payload is in the tool frame: '0,0,120 mm'.
+            [default: of positions found by 'identify' and 'explain' where masses differ, else the
+            tool frame's origin]
         coverage (K): Stated uncertainties are K times standard ones. [default: 2 for U95, else 1]
         dates: Day (dmy) or month (mdy) first in dates like 10/09/2026, where the file leaves it
             open.
@@ -128,6 +140,9 @@ def command(
             3'. [default: named as the joints, or q1,q2,...]
         columns (NAMES): Names for the columns of FILE, in their order, where it has no headers:
             'name,x,y,z'; a dash for one that is not needed.
+        taken_as: What positions of a pose under several loads become: positions show geometry and
+            springs; displacements are their differences, and show springs. [default: positions
+            under payloads from ten poses on, unless loads rise and fall; displacements else]
         register: Write positions in base axes, by the best fit of the robot to them. [default: only
             where displacements are made of positions in other axes]
         format_name (NAME): sa, leica, polyworks, robodk, delmia, figaroh, rosbag or points.
@@ -159,6 +174,9 @@ def command(
             wrench=None if wrench is None else wrench_of(wrench),
             point=one,
             points=several,
+            payload_point=None
+            if payload_point is None
+            else parse_values(payload_point, "length", where="--payload-point", like="0,0,120 mm"),
             payloads=_masses(payload or []),
             joints=_names(joints),
             coverage=coverage,
@@ -174,6 +192,7 @@ def command(
         topic=topic,
         marker=marker,
         into_base=register,
+        taken_as=None if taken_as is None else taken_as.value,
     )
     doubts = doubts_of(found, arm)
     for sentence in doubts:

@@ -39,7 +39,8 @@ UNKNOWN = (
 
 def document_of(found: Imported, out: Path | None, *, written: bool) -> dict[str, object]:
     """The keys of --json."""
-    draft, readings = found.draft, found.readings
+    draft = found.draft
+    wrench = draft.loads.wrench if found.mode == "positions" else found.readings.wrench
     return {
         "format": draft.sheet.title,
         "why": draft.sheet.why,
@@ -58,12 +59,13 @@ def document_of(found: Imported, out: Path | None, *, written: bool) -> dict[str
         "rows_with_load_difference": found.differences,
         "stiffness_identifiable": found.mode == "displacements" or found.differences > 0,
         "identifiable": identifiable(found),
+        "because": found.because or None,
         "assumed": list(found.said),
         "doubts": list(found.doubts),
         "orientation": orientation_of(found),
         "registration": registration_of(found),
         "registered": found.registered,
-        "largest_load_N": float(np.linalg.norm(readings.wrench[:, :3], axis=1).max()),
+        "largest_load_N": float(np.linalg.norm(wrench[:, :3], axis=1).max()),
         "out": out if written else None,
     }
 
@@ -139,18 +141,19 @@ def identifiable(found: Imported) -> str:
         if found.mode == "positions" and found.differences:
             of = "Of several markers" if found.orientation is None else "With their orientations"
             if len(set(found.draft.marker_of)) == 1 and found.orientation is None:
-                of = "From several places of the tracker"
+                of = "Of one marker" if found.because else "From several places of the tracker"
             text = OF_SEVERAL.format(
                 rows=found.differences, useful=found.useful_poses, poses=poses, of=of
             )
         if found.mode == "displacements":
             return text
-        return f"{text} {UNKNOWN if not found.registered else 'They are written in base axes.'}"
+        axes = UNKNOWN if not found.registered else "They are written in base axes."
+        return " ".join(filter(None, (text, found.because, axes)))
     text = (
         f"{found.differences} rows at {found.useful_poses} of {poses} poses differ in load from "
         f"the lightest row of their pose: {3 * found.differences} displacements, from which "
-        "springs and other elastic effects can be identified; 'identify' says which of them these "
-        "poses and loads show."
+        "springs and other elastic effects can be identified, and the geometry of the arm cannot; "
+        f"'identify' says which of them these poses and loads show. {found.because}"
     )
     if found.useful_poses < poses:
         text += (

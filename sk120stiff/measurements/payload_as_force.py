@@ -28,21 +28,20 @@ def refuse_payload_for_force(table: Table, settings: Settings, robot: str | None
     out = table.path.with_name(f"{table.path.stem}_forces.csv")
     at, hung = settings.point, None if settings.payload is None else settings.payload.point
     point = "X,Y,Z mm" if at is None else f"{_listed(at)} {at.unit}"
-    place = "[0, 0, 120], unit: mm" if hung is None else f"[{_listed(hung)}], unit: {hung.unit}"
+    place = [] if hung is None else ["--payload-point", f"{_listed(hung)} {hung.unit}"]
     frames = {"--base": settings.base_frame, "--tool": settings.tool_frame}
     words = [
         "sk120stiff", "import", str(table.path), "--robot", robot or "ROBOT",
         *(word for option, name in frames.items() if name for word in (option, name)),
-        "--point", point, "--out", str(out),
+        "--point", point, *place, "--out", str(out),
     ]  # fmt: skip
     raise InputError(
         "the column 'fx' is missing: displacements go with forces, and these with a payload",
         where=f"{table.path}, line {table.header_line}",
         remedy=f"Make forces of it: {shlex.join(words)} . They pull along -z of the base "
-        "at --point, the measured point in the tool frame. Where the payload hangs elsewhere, "
-        f"write force: {{frame: base, point: {{xyz: {place}}}}} into {out.stem}.yaml; "
-        "take over what else the YAML file states (noise, displacement). Or add fx[N], fy[N], "
-        "fz[N] by hand.",
+        "where the payload hangs: at --payload-point, the centre of its mass in the tool frame, by "
+        f"default the origin of that. Take over into {out.stem}.yaml what else the YAML file "
+        "states (noise, displacement). Or add fx[N], fy[N], fz[N] by hand.",
     )
 
 

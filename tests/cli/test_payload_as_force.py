@@ -38,15 +38,27 @@ def test_the_command_of_the_message_does_it(run, tmp_path: Path) -> None:
     path.with_suffix(".yaml").write_text(SETTINGS.format(robot=ur5()))
     refused = run("identify", str(path))
     assert refused.code == 2
-    assert "point: {xyz: [0, 0, 0.15], unit: m}" in refused.stderr
+    assert "--payload-point '0, 0, 0.15 m'" in " ".join(refused.stderr.split())
     told = re.search(r"sk120stiff (import .*?) \. ", " ".join(refused.stderr.split()))
     assert told is not None
     assert run(*shlex.split(told[1])).code == 0
     data = read_measurements(tmp_path / "hung weights_forces.csv")
     np.testing.assert_allclose(data.point, [0.03, -0.0105, 0.09])
-    np.testing.assert_allclose(data.force_point, data.point)
+    np.testing.assert_allclose(data.force_point, [0.0, 0.0, 0.15])
     np.testing.assert_allclose(data.wrench[:, 2], -9.80665 * np.tile(MASSES, 3))
     assert data.base_frame == "base_link" and not data.wrench[:, [0, 1, 3, 4, 5]].any()
+
+
+def test_a_payload_whose_place_nobody_states_hangs_at_the_tool_not_at_the_marker(
+    run, tmp_path: Path
+) -> None:
+    path, out = readings(tmp_path), tmp_path / "own.csv"
+    words = ("import", str(path), "--robot", ur5(), "--point", "30,-10.5,90 mm", "--out", str(out))
+    said = run(*words, "--json").document["assumed"][-1]
+    assert "at the origin of the tool frame" in said and "--payload-point" in said
+    data = read_measurements(out)
+    np.testing.assert_allclose(data.point, [0.03, -0.0105, 0.09])
+    np.testing.assert_array_equal(data.force_point, 0.0)
 
 
 def test_what_the_settings_do_not_say_stands_in_capitals(tmp_path: Path) -> None:

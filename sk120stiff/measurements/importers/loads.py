@@ -46,7 +46,7 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
     Raises:
         InputError: Two of the three, a force without its axis beside displacements, moments without
             forces, a component that may stand in a column of another name, a unit that nobody said,
-            a sensor's own axes that nobody told, or a wrench for nothing.
+            a sensor's own axes that nobody told, or a wrench or a payload's place for nothing.
     """
     where = str(sheet.path)
     there = [
@@ -73,6 +73,13 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
             "--forces says in which axes forces are, and no column fx, fy, fz holds any",
             where=where,
             remedy="Leave it out: a payload and --wrench are in axes of the base frame.",
+        )
+    if told.payload_point is not None and there != ["payload"]:
+        raise InputError(
+            "--payload-point says where the payload hangs, and nothing says that one does",
+            where=where,
+            remedy="Add a column payload[kg], or give --payload '5 kg'; where a force acts is what "
+            "force.point in the YAML file says.",
         )
     W = np.zeros((len(sheet.lines), 6))
     counted, hung = sheet.get("load"), sheet.get("payload")

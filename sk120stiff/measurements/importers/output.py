@@ -27,13 +27,27 @@ def _point_entry(xyz: Array, *, fit: bool = False) -> dict[str, Any]:
     return {**entry, "fit": True} if fit else entry
 
 
-def _acts(draft: Draft, where: str) -> str:
-    """Where the load is taken to act, as a sentence with a blank before it."""
-    if draft.loads.payload is not None:
+def _hangs(mode: Mode, told: Told) -> str:
+    """Where the payload is taken to hang, as a sentence with a blank before it."""
+    if told.payload_point is not None:
+        return " The payload hangs where --payload-point says."
+    if mode == "positions":
         return (
             " Where the payload hangs is not known: where masses differ, 'identify' and 'explain' "
-            "find it; else write the centre of its mass as payload.point into the YAML file."
+            "find it; else state the centre of its mass, --payload-point '0,0,120 mm' "
+            "(payload.point in the YAML file)."
         )
+    return (
+        " The payload is taken to hang at the origin of the tool frame, and its weight to act "
+        "there; if the centre of its mass is elsewhere, state it: --payload-point '0,0,120 mm' "
+        "(force.point in the YAML file)."
+    )
+
+
+def _acts(draft: Draft, where: str) -> str:
+    """Where a force is taken to act, as a sentence with a blank before it."""
+    if draft.loads.payload is not None:
+        return ""  # a weight acts where it hangs
     return (
         f" The load is taken to act {where}; where else it does is what force.point in the YAML "
         "file says."
@@ -58,7 +72,10 @@ def settings_for(
         "tool_frame": robot.tool_frame,
     }
     xyz, sensed = point[0], bool(np.any(draft.loads.wrench[:, 3:]))
+    weight = draft.loads.payload is not None
     said = "The marker and the load sit at the origin of the tool frame."
+    if weight:
+        said = "The marker sits at the origin of the tool frame."
     if several and not known:
         said = (
             "Where the markers sit is not known; the fit finds the place of each."
@@ -67,11 +84,11 @@ def settings_for(
             else "Where the markers sit is not known; the fit finds the place of each."
         )
     elif told.point is not None:
-        said = "The marker sits, and the load acts, where --point says."
+        said = f"The marker sits{'' if weight else ', and the load acts,'} where --point says."
     elif known:
         where = "--point says" if told.points else "the file says (TCP)"
         said = f"The markers sit where {where}."
-        if mode == "displacements" and len(draft.markers[1]) > 1:
+        if mode == "displacements" and len(draft.markers[1]) > 1 and not weight:
             said += (
                 " The load is taken to act at the origin of the tool frame; elsewhere it is what "
                 "force.point in the YAML file says."
@@ -87,6 +104,8 @@ def settings_for(
             said += _acts(draft, "there, too")
     elif mode == "positions":
         said = "Where the marker sits is not known; the fit finds it."
+    if weight:
+        said += _hangs(mode, told)
     places = draft.markers[1]
     if len(places) > 1:
         settings["points"] = {name: _point_entry(place) for name, place in places.items()}
@@ -95,10 +114,13 @@ def settings_for(
         settings["point"] = _point_entry(np.zeros(3), fit=True)
     else:
         settings["point"] = _point_entry(xyz)
-    if mode != "positions" or (draft.loads.payload is None and np.any(draft.loads.wrench)):
+    hung = _point_entry(np.zeros(3) if told.payload_point is None else told.payload_point)
+    if mode != "positions" or (not weight and np.any(draft.loads.wrench)):
         frame = draft.loads.frame  # those of the instrument are turned, see `columns_for`
         settings["force"] = {"frame": "base" if frame == "instrument" else frame}
-        if mode == "positions" and sensed and told.point is None:
+        if weight:
+            settings["force"]["point"] = hung
+        elif mode == "positions" and sensed and told.point is None:
             settings["force"]["point"] = _point_entry(np.zeros(3))
             said += (
                 " Forces and moments are taken about the origin of the tool frame, where a sensor "
@@ -110,8 +132,8 @@ def settings_for(
         settings["position"] = {"frame": "base" if registered else "unknown"}
         if any(header in QUATERNION for header, _ in draft.other):
             settings["rotation"] = {"axes": "target"}
-        if draft.loads.payload is not None and told.point is not None:
-            settings["payload"] = {"point": _point_entry(xyz)}
+        if weight and told.payload_point is not None:
+            settings["payload"] = {"point": hung}
     else:
         known = mode == "load pairs" or draft.sheet.subtracted
         zero = {"zero": draft.sheet.zero} if known else {}

@@ -48,6 +48,12 @@ from sk120stiff.measurements.importers.orientation import (
 from sk120stiff.measurements.importers.orientation_columns import named
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
 from sk120stiff.measurements.importers.pairing import paired
+from sk120stiff.measurements.importers.positions_or_differences import (
+    TakenAs,
+    first_mode,
+    last_mode,
+    unless_apart,
+)
 from sk120stiff.measurements.importers.rows_in_words import understood_words
 from sk120stiff.measurements.importers.several_files import joined
 from sk120stiff.measurements.importers.several_markers import (
@@ -56,7 +62,7 @@ from sk120stiff.measurements.importers.several_markers import (
     refuse_several_points,
     with_places,
 )
-from sk120stiff.measurements.importers.stations import loads_apart, with_stations
+from sk120stiff.measurements.importers.stations import with_stations
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.told_mass import with_told_mass
 from sk120stiff.measurements.importers.workbook import fitting_sheets, is_workbook, workbook_grid
@@ -80,6 +86,7 @@ class Imported:
         draft, told: Its rows, understood with what was told.
         mode: ``"displacements"`` as they stand in the file, ``"load pairs"`` (positions under two
             loads at one pose, whose differences are displacements), or ``"positions"`` as such.
+        because: Why it is one of the last two where it may be either, and how to get the other.
         readings: What reading the written files gives.
         columns, settings: What is written.
         fitted: The rigid robot laid onto the positions, or None; `fitted_rows` (P,) are their
@@ -96,6 +103,7 @@ class Imported:
     draft: Draft
     told: Told
     mode: Mode
+    because: str
     readings: Measurements
     columns: Written
     settings: dict[str, Any]
@@ -134,6 +142,7 @@ def import_readings(
     topic: str | None = None,
     marker: str | None = None,
     into_base: bool | None = None,
+    taken_as: TakenAs | None = None,
     formats: Formats = FORMATS,
 ) -> Imported:
     """Read positions of a marker, or displacements, in any format of `formats`.
@@ -152,6 +161,8 @@ def import_readings(
         topic, marker: Which topic of a recording, marker of several.
         into_base: Turn positions into base axes by the best placing of the robot; None: only where
             displacements are made of them and their axes are others.
+        taken_as: Keep positions of a pose under several loads as ``"positions"``, or make
+            ``"displacements"`` of them; None: as `positions_or_differences.last_mode` says.
         formats: The formats that are known.
 
     Raises:
@@ -187,21 +198,16 @@ def import_readings(
     draft = with_places(draft, told)
     refuse_one_marker_twice(draft)
     differences, paired_rows, shifted = paired_loads(draft)
-    mode: Mode = "positions"
-    if draft.displaced:
-        mode = "displacements"
-    elif paired_rows.any() and len(set(draft.marker_of)) < 2:
-        mode = "load pairs"
+    mode, because = first_mode(draft, paired_rows, taken_as), ""
     if mode != "positions":
         refuse_several_points(draft)
     draft = with_stations(draft, mode, robot, told)
-    if mode == "load pairs" and loads_apart(draft):
-        mode = "positions"  # a difference between two places of the tracker is none of the arm
+    mode = unless_apart(draft, mode, taken_as)
     laid = placed(draft, mode, robot, told)
-    if mode == "load pairs":  # differences would leave out how the load turned the tool
+    if mode == "load pairs":
         of_pairs = understood(draft, robot, told, "positions", laid.fitted, laid.rows)
-        if isinstance(of_pairs, Orientation):
-            mode = "positions"
+        turns = isinstance(of_pairs, Orientation)
+        mode, because = last_mode(draft, laid, taken_as, turns=turns)
     turned, registered, doubts = axes(laid.fitted, mode, into_base, told)
     read = understood(draft, robot, told, mode, laid.fitted, laid.rows)
     draft = with_orientation(draft, read, laid.fitted, registered=registered)
@@ -219,6 +225,7 @@ def import_readings(
         draft=draft,
         told=told,
         mode=mode,
+        because=because,
         readings=readings,
         columns=written,
         settings=settings,

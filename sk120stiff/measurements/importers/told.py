@@ -41,6 +41,7 @@ class Told:
         wrench: (6,) what the column ``load`` counts, N and N·m, base axes.
         point: (3,) where the marker sits in the tool frame, m.
         points: The same of several markers, by their names.
+        payload_point: (3,) where the centre of the payload is in the tool frame, m.
         payloads: What hung on the tool [kg] by the name of the file or a pattern of names, of all
             files by ``""``.
         joints: A column, or a linear expression of columns, for each actuated joint.
@@ -56,6 +57,7 @@ class Told:
     wrench: Array | None = None
     point: Array | None = None
     points: Mapping[str, Array] = field(default_factory=dict)
+    payload_point: Array | None = None
     payloads: Mapping[str, float] = field(default_factory=dict)
     joints: tuple[str, ...] | None = None
     coverage: float | None = None

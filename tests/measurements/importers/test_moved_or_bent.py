@@ -52,7 +52,7 @@ def test_sag_is_no_place_of_the_tracker(tmp_path: Path, names: tuple[str, ...]) 
     found = brought(files(tmp_path, *zip(names, seen, strict=True)))
     assert labels(found, "station") is None and labels(found, "series") is None
     known = "kg" in names[0]
-    assert found.mode == ("load pairs" if known else "positions")
+    assert found.mode == "positions" and (found.differences == 60) == known
     (said,) = [s for s in found.said if "to have stood in one place for all 3" in s]
     assert ("--payload 'FILE=5 kg'" in said) != known and "column station" in said
 
@@ -66,7 +66,7 @@ def test_a_file_for_each_pose_tells_no_frame(tmp_path: Path) -> None:
         parts += [(f"p{k}_{m}kg", sagged(rows, m, seed=k + 50 * m)) for m in (0, 3)]
     found = brought(files(tmp_path, *parts))
     assert labels(found, "station") is None and labels(found, "series") is None
-    assert found.mode == "load pairs" and found.useful_poses == 12
+    assert found.mode == "positions" and found.useful_poses == 12
     assert found.fitted is not None and found.fitted.rms > 2e-4  # what the arm's zeros are off
     assert any("fewer than 3 poses, as of p0_0kg, p0_3kg" in said for said in found.said)
 
