@@ -229,15 +229,26 @@ def _parts(
     )
     if found.definiteness_of_K_theta_minus_K_C != Definiteness.POSITIVE_DEFINITE:
         classes += " The unloaded pose is not stable under this load."
+    lost = "equilibrium" in found.no_deflection
     growth = (
         "The springs alone are indefinite here: the arm is unstable before any load."
         if found.critical_factor == 0.0
+        else f"The unloaded pose, before it bends, becomes unstable at {found.critical_factor:.4g} "
+        "times this load."
+        if lost and np.isfinite(found.critical_factor)
         else f"{found.critical_factor:.4g} times this load would make the arm unstable."
         if np.isfinite(found.critical_factor)
+        else "No multiple of this load makes the unloaded pose unstable."
+        if lost
         else "No multiple of this load makes the arm unstable."
     )
     missing = [f"No {label} deflection: {why}." for label, why in found.no_deflection.items()]
-    if "enhanced" in found.no_deflection and "equilibrium" not in found.no_deflection:
+    if lost:
+        missing.append(
+            "The conventional deflection takes the springs alone, as if the load were small: here "
+            "it is no place where the arm can be."
+        )
+    if "enhanced" in found.no_deflection and not lost:
         missing.append(
             "Followed from zero load, the arm bends away from its pose and comes to rest where the "
             "last row says; K_X holds at the unloaded pose, not there."

@@ -35,6 +35,7 @@ from sk120stiff.stiffness import (
     under_load,
 )
 from sk120stiff.stiffness.elastic import ZERO, stiffness_of
+from sk120stiff.stiffness.equilibrium import SEE_CRITICAL
 from sk120stiff.stiffness.wrench import wrenches
 
 _WANTED = (BY_POSE | BY_LOAD) - {
@@ -165,7 +166,7 @@ def loaded_stiffness(
         warn_of_far_bend(model, equilibrium)
     except Refusal as refusal:
         found = under_load(arm, rows[0], load, _WANTED)
-        warn(str(refusal))
+        warn(str(refusal).removesuffix(SEE_CRITICAL).rstrip())  # here it stands in the answer
         missing["equilibrium"] = refusal.what
     if np.isnan(found.of("compliance")).any():
         raise Refusal(

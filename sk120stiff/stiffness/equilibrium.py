@@ -26,6 +26,8 @@ LONGEST_STEP = 0.5  # rad or m: beyond it Newton cannot be trusted
 FOLLOWED_ITERATIONS, FOLLOWED_TOLERANCE = 6, 1e-9  # of Newton at one step of the load
 FIRST_STEP, LEAST_STEP = 0.25, 1e-4  # of the load
 SHRINK, GROW = 0.25, 2.0  # of the step, after it failed and after it held
+SMALL = 0.01  # of the load: such shares are told as small
+SEE_CRITICAL = "See the critical load with 'sk120stiff stiffness'."
 FARTHEST = np.pi  # rad or m from the unloaded pose: no linear spring means more
 
 
@@ -306,11 +308,12 @@ def _stable(feedback: Array) -> Mask:
 
 
 def _beyond(reached: float) -> Refusal:
+    # Below SMALL the steps are no finer than the share itself.
+    share = f"at {reached:.3g} of" if reached >= SMALL else f"at less than {SMALL:g} of"
     return Refusal(
-        f"no static equilibrium: followed from zero, the arm gives way at {reached:.3g} of this "
-        "load, which is beyond what these springs can hold",
-        remedy="Check the units of load and springs; see the critical load with "
-        "'sk120stiff stiffness'.",
+        f"no static equilibrium: followed from zero, the arm gives way {share} this load, which is "
+        "beyond what these springs can hold",
+        remedy=f"Check the units of load and springs. {SEE_CRITICAL}",
     )
 
 

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.errors import InputError, Refusal
+from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
@@ -34,6 +34,7 @@ from sk120stiff.workspace.reach import why_unreached
 
 FIRST = np.array([0])
 FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
+READ = ("dx", "dy", "dz")  # what instruments read
 POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 STARTS = 32  # poses from which the first point of a path is sought
 SAME_BRANCH = 0.05  # rad or m between solutions that count as one
@@ -117,6 +118,13 @@ def read_path(
                 _column(table, name, kind)
                 for name, kind in zip(robot.actuated, robot.kinds, strict=True)
             ]
+        )
+    read = [name for name in READ if name in has]
+    if by_joint and read:
+        warn(
+            f"{table.path} looks like readings: displacements stand beside its joints "
+            f"({', '.join(read)}). They are no part of a path; the joints and loads of its rows "
+            "are taken as points to drive to"
         )
     if not by_place:
         if part is not None:
@@ -230,7 +238,7 @@ def _agree(path: LoadedPath, arm: ElasticArm) -> None:
         f"the joints put {arm.frame} {far} away from the {what} beside them",
         where=f"{path.table.path}, line {path.table.lines[worst]}",
         remedy="Delete the columns that are not meant: the joints, or x, y, z (with roll, pitch, "
-        "yaw).",
+        "yaw). Positions that an instrument read are no path.",
     )
 
 

@@ -258,6 +258,23 @@ def test_a_load_that_nothing_can_hold(run, tmp_path: Path) -> None:
     assert len(outcome.stderr.splitlines()) == 1
 
 
+def test_far_beyond_the_critical_load_one_number_says_how_far(run) -> None:
+    """A kilotonne-force: just below the number that is said the pose holds, just above it not."""
+    command = ("stiffness", "motoman_sk120", "--pose", "0,0,-90,0,90,0 deg")
+    outcome = run(*command, "--wrench", "0,0,-1e9 N")
+    assert outcome.code == 0
+    factor = run(*command, "--wrench", "0,0,-1e9 N", "--json").document["critical_load_factor"]
+    document = run(*command, "--wrench", f"0,0,{-1e9 * factor * 0.999} N", "--json").document
+    assert document["definiteness"]["K_theta_minus_K_C"] == "positive definite"
+    document = run(*command, "--wrench", f"0,0,{-1e9 * factor * 1.001} N", "--json").document
+    assert document["definiteness"]["K_theta_minus_K_C"] != "positive definite"
+    told = " ".join((outcome.stdout + outcome.stderr).split())
+    assert f"becomes unstable at {factor:.4g} times this load" in told
+    assert factor < 0.01 and "gives way at less than 0.01 of this load" in told
+    assert "no place where the arm can be" in told
+    assert "sk120stiff stiffness" not in told
+
+
 def test_what_yields_under_the_load_alone_is_told_too(run, two_links, tmp_path: Path) -> None:
     """A floor that is rigid until it is loaded, on an arm without masses."""
     _, model = two_links
