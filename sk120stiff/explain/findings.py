@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy import special
 
 from sk120stiff.effects import Effect
 from sk120stiff.model import Model, Share
@@ -26,8 +27,8 @@ class Confirmation:
     Attributes:
         folds_improved, folds: In how many of the folds the held-out misfit falls when the effect is
             added.
-        gain, gain_error: Fall of the held-out misfit per reading axis [noise variances], with its
-            standard error over poses.
+        gain, gain_error: Fall of the held-out misfit per reading axis [noise variances], and the
+            standard error over poses that it would have by chance.
         frequency: Share of resamplings of the poses in which the same name (or an alternative of
             it) wins.
         rival_frequency: Share in which the most frequent of the other names wins.
@@ -44,6 +45,12 @@ class Confirmation:
     rival_frequency: float
     foretells: bool = True
     others: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def chance(self) -> float:
+        """Probability that an effect which is not there gains as much; 0 where no pose can tell."""
+        errors = self.gain / self.gain_error if self.gain_error > 0.0 else np.inf
+        return float(special.erfc(max(errors, 0.0) / np.sqrt(2.0))) if self.foretells else 0.0
 
     @property
     def holds(self) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
-from sk120stiff.errors import InputError, Refusal, ToolkitWarning
+from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.explain.advise.best_guess import contenders
@@ -19,17 +19,13 @@ from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.findings import Finding
-from sk120stiff.explain.judge.adequacy import Adequacy, adequacy
-from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
-from sk120stiff.explain.judge.beside_form import (
-    beside_model_form,
-    unless_imitating,
-    with_model_form,
-)
-from sk120stiff.explain.judge.beside_suspect import Account, account_beside
+from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.attribution import Named
+from sk120stiff.explain.judge.beside_suspect import Account
 from sk120stiff.explain.judge.implausible import implausible
+from sk120stiff.explain.judge.judged_names import adequacy_of, judged_names
 from sk120stiff.explain.judge.one_gear import WORTH_A_SENTENCE, Imitated, imitated_together
-from sk120stiff.explain.judge.posterior import doubted, in_full, one_more
+from sk120stiff.explain.judge.posterior import doubted, doubted_findings, one_more
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
@@ -37,7 +33,6 @@ from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file, ga
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
-from sk120stiff.explain.priors import FURTHER_IMPOSTOR, IMPOSTOR
 from sk120stiff.explain.select.best_selection import (
     Try,
     best_selection,
@@ -45,13 +40,11 @@ from sk120stiff.explain.select.best_selection import (
     of_readings,
 )
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
-from sk120stiff.explain.select.stepwise import Selection, refit, select
+from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import Fit, as_seen, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
-
-LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
 
 TOLD = 2  # sentences on where the remainder lives
 
@@ -130,22 +123,17 @@ def explain_displacements(
     found, noise = best_selection(used, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
-    found, named, account = _judged(found, base, under, seed=options.seed)
+    found, named, account = judged_names(found, base, under, seed=options.seed)
     found, named = without_rigid_gears(found, named)
     found = replace(found, final=with_settled_sizes(found.final))
     base = of_readings(found.base.problem.measurements, base)
-    left = _adequacy(found, noise)
+    left = adequacy_of(found, noise)
     tell("the gap step by step", 0.7)
     goes_with = None if account is None else account.suspect
     remainder = remainder_of(_as_written(found.final, noise), left, goes_with)
     together = _together(found, named, account)
-    findings = tuple(
-        in_full(
-            each.doubted((FURTHER_IMPOSTOR if k else IMPOSTOR) * remainder.something_else).doubted(
-                sum(part.probability for part in together if each.effect.id in part.ids)
-            )
-        )
-        for k, each in enumerate(named.findings)
+    findings = doubted_findings(
+        named.findings, remainder.something_else, together, noise_known=noise.known
     )
     remainder = remainder.unless([part.probability for part in together])
     effects = [finding.effect for finding in findings]
@@ -212,78 +200,6 @@ def _worth_of_the_suspect(
     if holdout is None:
         return foretold_beside(beside, len(effects), without, seed=seed)
     return foretold_on_file(found, beside, account.suspect, effects, holdout, without)
-
-
-def _judged(
-    found: Selection, base: Fit, under: Try, *, seed: int
-) -> tuple[Selection, Named, Account | None]:
-    """The names that stand: against noise alone, else beside model-form error or one suspect.
-
-    Args:
-        found: What the search settled on.
-        base: The base model, held against the noise of the readings.
-        under: Makes a selection.
-        seed: Of folds and resampling.
-    """
-    noise, at, standing = base.problem.noise, base, set[str]()
-    if not found.final.exceeds:
-        exactly = unless_imitating(*judged(found, seed=seed), seed)
-        if _explains(*exactly, noise):
-            return *exactly, None
-        at = held_against(noise, exactly[0].final)
-        standing = {effect.id for effect in exactly[0].effects}
-    drawn = [each for each in found.regression.candidates if each.random_effects]
-    found, named = beside_model_form(at, under, names=standing, seed=seed)
-    offsets = _beside_offsets(found, named, drawn, noise, under, seed)
-    if offsets is not None:
-        return *offsets, None
-    account = account_beside(
-        base,
-        found,
-        named,
-        under=under,
-        complete=lambda tried, _said, noise: (
-            not tried.final.exceeds and not _adequacy(tried, noise).lacking
-        ),
-        seed=seed,
-    )
-    if account is None or (_drawn(account.named) and _adequacy(account.selection, noise).lacking):
-        return found, named, None
-    return account.selection, account.named, account
-
-
-def _beside_offsets(
-    found: Selection,
-    named: Named,
-    drawn: Sequence[Effect],
-    noise: NoiseModel,
-    under: Try,
-    seed: int,
-) -> tuple[Selection, Named] | None:
-    """What stands where single poses have a constant of their own, and draws are named for it.
-
-    Model-form error of that kind is what an offset of each pose is: the same number has a name.
-    None where more than noise is left beside the draws, be it larger than stated.
-
-    Args:
-        found, named: What stands beside model-form error.
-        drawn: Candidates that are draws of single poses.
-        noise: Of the readings, as it was stated.
-        under: Makes a selection.
-        seed: Of folds and resampling.
-    """
-    form = found.final.problem.noise.form
-    if not drawn or not form.constant:
-        return None
-    effects = [*(finding.effect for finding in named.findings), *drawn]
-    try:
-        at = held_against(noise, refit(found.base, effects))
-    except Refusal:
-        return None
-    if with_model_form(at).form:
-        return None
-    tried = beside_model_form(at, under, names={each.id for each in effects}, seed=seed)
-    return tried if _drawn(tried[1]) and not _adequacy(tried[0], noise).lacking else None
 
 
 def _together(found: Selection, named: Named, account: Account | None) -> tuple[Imitated, ...]:
@@ -368,32 +284,6 @@ def _silent(phrase: str, share: float) -> None:
     del phrase, share
 
 
-def _adequacy(found: Selection, noise: NoiseModel) -> Adequacy:
-    return adequacy(held_against(noise, found.final), {effect.id for effect in found.effects})
-
-
 def _as_written(final: Fit, noise: NoiseModel) -> Fit:
     """The fit that goes into files: by the noise as stated, beside model-form error if there is."""
     return final if final.problem.noise.form else held_against(noise, final)
-
-
-def _explains(found: Selection, named: Named, noise: NoiseModel) -> bool:
-    """Do these names leave no more than names may leave?"""
-    left = _adequacy(found, noise)
-    if _drawn(named):
-        return not left.lacking
-    return not _too_much(left, MISSPECIFICATION if named.misspecified else LEFT_OVER)
-
-
-def _drawn(named: Named) -> bool:
-    """Has something a name whose values are draws of single poses?
-
-    Draws take on part of any cause, and with a suspect beside them they explain everything: such
-    names stand where they leave nothing by themselves.
-    """
-    return any(finding.effect.random_effects for finding in named.findings)
-
-
-def _too_much(left: Adequacy, allowed: float) -> bool:
-    """Is more left over than a name may leave?"""
-    return left.lacking and left.excess > allowed * left.explained

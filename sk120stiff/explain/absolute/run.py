@@ -120,6 +120,8 @@ def explain_positions(
         if _less_likely(again, final, linear):
             break
         seen, (linear, found, laws, hidden), final = final, about, again
+    if (apart := _with_own_values(linear, found, final)) != found:
+        found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
     tell("what is left", 0.85)
     final, guess = with_model_form(final), None
     suspects: tuple[Contender, ...] = ()
@@ -191,6 +193,15 @@ def _selected(
         found = by_likeliest(linear, found)
     laws = laws_at(linear, found.order, seen)
     return by_best_laws(linear, found.order, laws), found, laws, hidden
+
+
+def _with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen:
+    """Without names of which the exact fit tells nothing: all their values are one with others."""
+    own = {p.effect.id for p in final.model.parameters if p.free}
+    apart = tuple(e for e in found.order if linear.candidates[e].id in own)
+    why = "fits, but all its values are counted in others, which explain as much."
+    gone = {e: f"{linear.candidates[e].id} {why}" for e in found.order if e not in apart}
+    return Chosen(apart, {**found.dropped, **gone}) if gone else found
 
 
 def _refuse_few_poses(readings: Measurements) -> None:

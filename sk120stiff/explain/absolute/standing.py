@@ -16,12 +16,15 @@ def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple
 
 
 def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
-    """Probability of one of the chosen, and of each that explains as much in its place."""
+    """Probability of one of the chosen, and of each that explains as much in its place.
+
+    Together they have that of `alternatives`; among themselves they share it by their usual odds.
+    """
     rivals, prior, weight = _rivals(linear, chosen, e)
-    weight = weight * np.exp([*prior, 0.0])
-    share = weight / weight.sum()
+    own = weight[:-1] * np.exp(prior)
+    share = weight[:-1].sum() / weight.sum() * own / own.sum()
     names = [linear.candidates[c].id for c in (e, *rivals)]
-    return dict(zip(names, map(float, share), strict=False))
+    return dict(zip(names, map(float, share), strict=True))
 
 
 def _rivals(

@@ -29,6 +29,7 @@ NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in 
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
+EVEN = 0.5  # chance that nothing gains as much at other poses, where nobody said what the noise is
 SOME = 0.05  # share of the drawings of the poses from which on a law of the same gear counts
 NUMBER = re.compile(r"\d+(\.\d+)?")
 
@@ -159,7 +160,8 @@ def findings_of(
         objection = _objection(found, findings, place, least)
         if objection is None:
             findings[place] = _confirmed(found, order[place], findings[place], seed)
-            if findings[place].evidence.confirmation.holds:
+            said = findings[place].evidence.confirmation
+            if said.holds and (found.regression.sigma_known or said.chance < EVEN):
                 continue
             objection = Fallen(findings[place].effect.id, _unconfirmed(findings[place]))
         return tuple(findings), objection
@@ -205,8 +207,7 @@ def _objection(
         return Fallen(
             name,
             f"{name} fits a little better, but beside what the laws of real arms leave over its "
-            f"evidence is weak ({finding.gain:.1f} where {least:.0f} is strong); it "
-            "is not named.",
+            f"evidence is weak ({finding.gain:.1f} where {least:.0f} is strong); it is not named.",
         )
     return None
 

@@ -7,14 +7,15 @@ probabilities within the catalogue: a cause that it lacks has no score.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import NAMED, Finding
-from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR
+from sk120stiff.explain.judge.one_gear import Imitated
+from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR, IMPOSTOR
 from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import score_set
 
@@ -58,6 +59,35 @@ def until_covered(odds: Mapping[str, float], listed: Collection[str]) -> tuple[s
         more.append(others.pop())
         covered += odds[more[-1]]
     return tuple(more)
+
+
+def doubted_findings(
+    findings: Sequence[Finding],
+    something_else: float,
+    together: Sequence[Imitated],
+    *,
+    noise_known: bool,
+) -> tuple[Finding, ...]:
+    """The findings, the strongest first, each as probable as all that speaks against it lets it be.
+
+    Beside a cause without a name the strongest seldom imitates a part of it; a further name may, as
+    far as its gain at poses left out may be chance. Where nobody said how large the noise is, those
+    poses are the only witness that what a name takes off is no noise.
+
+    Args:
+        findings: By their evidence.
+        something_else: Probability that a cause without a name is at work.
+        together: Names of one gear that may be one cause.
+        noise_known: The noise was stated, or repeats tell it.
+    """
+    out = []
+    for k, each in enumerate(findings):
+        chance = each.evidence.confirmation.chance
+        imitates = IMPOSTOR + (FURTHER_IMPOSTOR - IMPOSTOR) * chance * (k > 0)
+        one_cause = sum(part.probability for part in together if each.effect.id in part.ids)
+        found = each.doubted(imitates * something_else).doubted(one_cause)
+        out.append(in_full(found if noise_known else found.doubted(chance)))
+    return tuple(out)
 
 
 def in_full(finding: Finding) -> Finding:
