@@ -46,6 +46,14 @@ OF_POSITIONS: tuple[Fault, ...] = (
         noise_smaller_than_stated=("return max(left, together) if self.stated else left", "return left"),
     ),
     *of(
+        "identify/absolute/left_out.py", *tests("absolute", "own_weight"),
+        springs_blind_to_the_arms_weight=("more = np.column_stack([more, problem", "more = 0.0 * np.column_stack([more, problem"),
+    ),
+    *of(
+        "exports/urdf.py", *tests("exports", "urdf"),
+        exported_masses_as_before=("_weigh(root, model.assembly.heavier(model.values))", "_weigh(root, 1.0)"),
+    ),
+    *of(
         "arrays.py", *tests("", "arrays"),
         rounding_taken_for_a_column=("lengths > ROUNDING * lengths", "lengths > 0.0 * lengths"),
     ),
@@ -196,7 +204,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "plan/positions_pool.py", *tests("plan", "of_positions"),
-        positions_read_already_forgotten=("before += A.T @ A", "before += 0.0 * (A.T @ A)"),
+        positions_read_already_forgotten=("before += B.T @ B", "before += 0.0 * (B.T @ B)"),
         frame_and_marker_taken_for_known=("wide = PoseProblem(start, there", "wide = PoseProblem(model, there"),
     ),
     *of(

@@ -330,8 +330,20 @@ FAULTS: tuple[Fault, ...] = (
         a_cause_that_undoes_calibrations=("np.vstack([J, fit.beforehand.rows()[:, moving] / unit])", "J"),
     ),
     *of(
-        "explain/run.py", *tests("explain", "offsets_of_poses"),
+        "explain/judge/judged_names.py", *tests("explain", "offsets_of_poses"),
         offsets_behind_a_statement=("if not drawn or not form.constant:", "if True:"),
+    ),
+    *of(
+        "explain/findings.py", *tests("explain", "evidence"),
+        gains_never_by_chance=("special.erfc(max(errors, 0.0) / np.sqrt(2.0))", "special.erfc(99.0 + max(errors, 0.0))"),
+    ),
+    *of(
+        "explain/judge/judged_names.py", *tests("explain", "rough"),
+        scatter_taken_for_a_cause=("variance_components(base).probability > BY_CHANCE", "variance_components(base).probability > -1.0"),
+    ),
+    *of(
+        "explain/judge/posterior.py", *tests("explain", "rough"),
+        names_sure_of_no_witness=("found if noise_known else found.doubted(chance)", "found"),
     ),
     *of(
         "identify/solve/problem.py", *tests("identify", "null_space"),
@@ -345,10 +357,6 @@ FAULTS: tuple[Fault, ...] = (
         "model/sensitivities.py", *tests("absolute", "link_masses"), *tests("absolute", "sensitivities"),
         masses_that_show_twice=("adjoint @ (rest.weight.compliance @ stated", "2.0 * adjoint @ (rest.weight.compliance @ stated"),
         masses_that_hang_on_a_gears_curve=("adjoint @ (rest.weight.compliance @ stated", "adjoint @ (rest.compliance @ stated"),
-    ),
-    *of(
-        "exports/urdf.py", *tests("exports", "urdf"),
-        exported_masses_as_before=("_weigh(root, model.assembly.heavier(model.values))", "_weigh(root, 1.0)"),
     ),
     *of(
         "measurements/placing_slips.py", *tests("measurements", "conventions"),

@@ -22,6 +22,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, rigid_columns
 from sk120stiff.identify.absolute.gauge import least_set
 from sk120stiff.identify.absolute.noise_sizes import START
+from sk120stiff.identify.absolute.own_weight import heaviest_payload, own_weight
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.start import loaded, started
 from sk120stiff.measurements import Channels, Measurements, NoiseModel
@@ -92,17 +93,26 @@ class PositionsPool:
 
     @cached_property
     def information(self) -> tuple[Array, Array]:
-        """(M, P, P) of each candidate over the spans, and (P, P) before, plausible ranges in it."""
+        """(M, P, P) of each candidate over the spans, and (P, P) before, plausible ranges in it.
+
+        Behind the free parameters stand moments of the links of an arm without masses: what its
+        weight may do is no part of a fit, and makes springs less certain all the same.
+        """
 
         def columns(problem: PoseProblem) -> Array:
             slope = problem.channel_gap(problem.model.values, derivative=True)[1]
-            return problem.of_channels.apply(slope[:, problem.model.free] * self.span)
+            own = slope[:, problem.model.free] * self.span
+            return problem.of_channels.apply(np.column_stack([own, own_weight(problem, heaviest)]))
 
-        before = np.eye(len(self.span))
-        if self.known is not None:
-            A = columns(replace(self.problem, measurements=self.known))
-            before += A.T @ A
-        return self._by_candidate(columns(self.problem)), before
+        known = None if self.known is None else replace(self.problem, measurements=self.known)
+        here = self.problem if known is None else known
+        heaviest = max(heaviest_payload(each) for each in (self.problem, here))
+        A = columns(self.problem)
+        before = np.eye(A.shape[1])
+        if known is not None:
+            B = columns(known)
+            before += B.T @ B
+        return self._by_candidate(A), before
 
     def rivalry(self, effect: Effect, rival: Effect) -> Rivalry:
         """What they would say between two effects; what was read already is known."""

@@ -35,18 +35,31 @@ def test_the_held_out_gain_is_that_of_plain_least_squares_fold_by_fold():
     reg = regression()
     model = score_set(reg, reg.sums(), (0,))
     rng = np.random.default_rng(0)
-    fold_gain, pose_gain, axes = confirming._held_out_gain(reg, weighed(reg), model, 0, rng)
+    fold_gain, pose_gain, error, axes = confirming._held_out_gain(reg, weighed(reg), model, 0, rng)
+    by_chance = np.zeros(POSES)
     fold = confirming.drawn_parts(POSES, confirming.FOLDS, np.random.default_rng(0))
     assert sorted(np.bincount(fold)) == [2, 2, 2, 3, 3]
     assert axes == reg.rows
     for k in range(confirming.FOLDS):
         test = fold[reg.group] == k
-        misfit = []
+        left = []
         for columns in ([0, 1], [0, 1, 2]):
             v, *_ = np.linalg.lstsq(reg.X[~test][:, columns], reg.y[~test], rcond=None)
-            misfit.append(((reg.y - reg.X[:, columns] @ v)[test] ** 2).sum())
+            left.append((reg.y - reg.X[:, columns] @ v)[test])
+        misfit = [(each**2).sum() for each in left]
+        np.add.at(by_chance, reg.group[test], 2.0 * left[1] * (left[0] - left[1]))
         assert fold_gain[k] == pytest.approx(misfit[0] - misfit[1], rel=1e-6)
         assert pose_gain[fold == k].sum() == pytest.approx(fold_gain[k])
+    assert error == pytest.approx(np.linalg.norm(by_chance), rel=1e-6)
+
+
+def test_a_gain_that_noise_brings_as_often_is_chance():
+    """Of two standard errors one in twenty; of poses that can tell nothing, none."""
+    reg = regression()
+    seen = confirming.confirm(reg, score_set(reg, reg.sums(), (0,)), 0, ())
+    assert replace(seen, gain=1.96, gain_error=1.0).chance == pytest.approx(0.05, abs=1e-3)
+    assert replace(seen, gain=-3.0, gain_error=1.0).chance == 1.0
+    assert replace(seen, gain=-3.0, gain_error=1.0, foretells=False).chance == 0.0
 
 
 def test_poses_are_drawn_again_whole_and_with_replacement():

@@ -74,7 +74,7 @@ def test_no_name_is_certain(share: float, said: str) -> None:
 
 
 def test_a_set_is_told_as_a_set_on_the_terminal() -> None:
-    effect = SimpleNamespace(name="play", id="play:j1", sentence=lambda: "The gear of j1 has play.")
+    effect = SimpleNamespace(name="play", id="play:j1", told=lambda _: "The gear of j1 has play.")
     one = SimpleNamespace(
         effect=effect, probability=0.9996, alternatives=("bend:j1", "loop:j1"), exact=("loop:j1",),
         evidence=SimpleNamespace(runner_up=None, odds={"play:j1": 0.7, "bend:j1": 0.2996}),

@@ -17,8 +17,10 @@ from sk120stiff.explain.judge.beside_suspect import Account, account_beside
 from sk120stiff.explain.select.best_selection import Try, held_against
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
+from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
 
+BY_CHANCE = 0.01  # up to this probability that noise of one size shows as much, it has no one size
 LEFT_OVER = 0.2  # share of the named signature that may remain unexplained before a name is doubted
 
 
@@ -37,7 +39,7 @@ def judged_names(
     if not found.final.exceeds:
         exactly = unless_imitating(*judged(found, seed=seed), seed)
         if _explains(*exactly, noise):
-            return *(exactly if noise.known else _or_rough(exactly, base, under, seed)), None
+            return *_or_rough(exactly, base, under, seed), None
         at = held_against(noise, exactly[0].final)
         standing = {effect.id for effect in exactly[0].effects}
     drawn = [each for each in found.regression.candidates if each.random_effects]
@@ -65,9 +67,11 @@ def _or_rough(
 ) -> tuple[Selection, Named]:
     """What stands against noise of one size, or beside model-form error where that is likelier.
 
-    Nobody said how large the noise is, and an error that grows with the load may look like a cause.
+    Where nobody said how large the noise is, an error that grows with the load may look like a
+    cause: it is asked where such an error shows beyond chance.
     """
-    if not with_model_form(base).form:
+    known = exactly[0].base.problem.noise.known or base.problem.noise.known
+    if known or variance_components(base).probability > BY_CHANCE:
         return exactly
     beside = beside_model_form(base, under, seed=seed)
     return min(exactly, beside, key=lambda each: each[0].total)

@@ -18,15 +18,21 @@ from sk120stiff.robot.rotations import cross_product
 ALONG = 0.1  # sine between a joint's axis and the next one, below which they are as good as one
 
 
-def own_weight(problem: PoseProblem) -> Array:
+def heaviest_payload(problem: PoseProblem) -> float:
+    """Of these readings [kg]; 0 where nothing hangs on the tool."""
+    return float(np.abs(problem.said.payload).max(initial=0.0))
+
+
+def own_weight(problem: PoseProblem, heaviest: float | None = None) -> Array:
     """(M, 3 m) change of each number by the moments of m links about three directions of theirs.
 
-    Each is as large as the heaviest payload at the reach beyond its joint. No columns where the
-    arm's masses are stated, nothing hangs on it, or what a load does alone was read.
+    Each is as large as the heaviest payload [kg], by default that of the readings, at the reach
+    beyond its joint. No columns where the arm's masses are stated, nothing hangs on it, or what a
+    load does alone was read.
     """
-    robot, said = problem.model.robot, problem.said
+    robot = problem.model.robot
     none = np.zeros((len(problem.rows), 0))
-    heaviest = float(np.abs(said.payload).max(initial=0.0))
+    heaviest = heaviest_payload(problem) if heaviest is None else heaviest
     weighs = robot.mechanism().chain.weighs
     if weighs or not heaviest or problem.channels.displacements_alone:
         return none

@@ -1,0 +1,60 @@
+"""Compliance that scatters from pose to pose, one pull at each, and no noise is stated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sk120stiff import base_model, load_robot
+from sk120stiff.explain import Options
+from sk120stiff.explain.judge.posterior import doubted_findings
+from sk120stiff.measurements import Measurements
+from tests.explain.readings import answered, hidden
+from tests.hidden.generator.causes_elastic import JointTilt
+from tests.hidden.generator.world import Cause
+
+KINDS = Options(only=("joint_tilt", "link_bending", "base_rocking", "gear_hardening"))
+
+
+@pytest.fixture(scope="module")
+def springs():
+    return base_model(load_robot("motoman_sk120"))
+
+
+def pulled(seed: int, *causes: Cause, share: float = 0.05) -> Measurements:
+    """One pull at each of 36 poses, off by a share of what the arm yields there along its way."""
+    clean = hidden(*causes, poses=36, loads=1, sigma=2e-6, stated=False, seed=seed)
+    rng = np.random.default_rng(seed)
+    d = clean.displacement
+    size = np.linalg.norm(d, axis=1, keepdims=True)
+    return replace(clean, displacement=d + share * size * rng.normal(size=d.shape))
+
+
+@pytest.mark.parametrize("seed", [0, 17, 34])
+def test_scatter_that_grows_with_the_load_makes_no_name(springs, seed: int):
+    """Noise of one size would name rocking of the base or a link that bends in two of them."""
+    assert not answered(springs, pulled(seed), options=KINDS).findings
+
+
+def test_a_cause_that_other_poses_show_is_named_in_it(springs):
+    tilt = JointTilt("joint_2_l", {"first": 1e-6, "second": 1e-6})
+    answer = answered(springs, pulled(7, tilt), options=KINDS)
+    told = [finding for finding in answer.findings if finding.probability > 0.9]
+    names = {name for each in told for name in (each.effect.id, *each.alternatives)}
+    assert "joint_tilt:joint_2_l" in names
+    (first, *_) = answer.findings
+    assert first.evidence.confirmation.chance < 0.01
+    # By as much as noise brings in three of ten cases it would be no surer than that.
+    seen = replace(first.evidence.confirmation, gain=1.036, gain_error=1.0)
+    weak = replace(first, evidence=replace(first.evidence, confirmation=seen))
+    known, unknown = (
+        doubted_findings([weak], 0.0, (), noise_known=known)[0].probability
+        for known in (True, False)
+    )
+    assert unknown == pytest.approx(0.7 * known, abs=0.01) and known > 0.9
+    beside = [doubted_findings([each, each], 1.0, (), noise_known=True) for each in (first, weak)]
+    strong, doubtful = ([each.probability / known for each in pair] for pair in beside)
+    assert strong == pytest.approx([0.96, 0.96], abs=0.03)
+    assert doubtful == pytest.approx([0.96, 0.90], abs=0.03)
