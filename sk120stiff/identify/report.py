@@ -78,8 +78,8 @@ def _statistics(fit: Fit) -> list[str]:
     lines += [] if test is None else [test.sentence()]
     if fit.exceeds:
         lines.append(
-            f"The gap is {fit.noise_factor:.3g} times what the noise makes. The standard errors "
-            "are inflated by as much."
+            f"More is left than the noise makes: √(χ²/degrees of freedom) is "
+            f"{fit.noise_factor:.3g}. The standard errors are inflated by as much."
         )
     if test is not None and (said := test.of_the_statement()):
         lines.append(said)
@@ -128,10 +128,11 @@ def _far_off(fit: Fit) -> list[str]:
     size = np.sqrt(np.nansum(fit.gap**2, axis=1))
     worst = sorted(rows, key=lambda k: -float(size[k]))[:MOST_LINES]
     where = [f"{place_of(fit.problem.measurements, int(k))}: {1e6 * size[k]:.3g} µm" for k in worst]
-    count = f"{len(rows)} reading is" if len(rows) == 1 else f"{len(rows)} readings are"
+    one = len(rows) == 1
     return [
-        f"{count} far off what the fit makes of the others, and pull it: --robust trusts such "
-        "readings less, a 0 in a column use leaves them out, and 'explain' sets them aside.",
+        f"{len(rows)} reading{' is' if one else 's are'} far off what the fit makes of the others, "
+        f"and pull{'s' * one} it: --robust trusts such readings less, and a 0 in a column use "
+        "leaves them out; 'explain' judges anew whether a cause may have made them.",
         *where,
     ]
 

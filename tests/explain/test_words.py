@@ -1,6 +1,6 @@
 """Sentences of an answer do not contradict one another, and say what their numbers mean."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,6 +19,7 @@ from sk120stiff.explain.answer.words import (
 )
 from sk120stiff.explain.findings import Apart, Contender, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.steps import NOT_FORETOLD
 from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.identify import LackOfFit
 from sk120stiff.model import Share
@@ -88,6 +89,14 @@ def test_what_to_do_now_sends_to_the_place_where_one_is_known() -> None:
     assert f"The rest goes with {PLACE}" in next_step(Answered())
     assert "repeat a few readings" not in next_step(Answered())
     assert "repeat a few readings" in next_step(Answered(where=(CLOSE,)))
+
+
+def test_nobody_is_sent_to_mend_what_other_poses_do_not_show() -> None:
+    told = Answered()
+    worse = replace(told, where=(*told.where, f"Poses are foretold worse with it: {NOT_FORETOLD}."))
+    said = next_step(worse)
+    assert f"The rest shows most with {PLACE}, but poses left out are foretold no better" in said
+    assert "look there" not in said
 
 
 def test_where_most_of_it_goes_with_one_place_it_is_sent_there_too() -> None:

@@ -11,6 +11,7 @@ from sk120stiff.errors import listed
 from sk120stiff.explain.answer.drifting import steady_offsets
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
+from sk120stiff.explain.judge.steps import NOT_FORETOLD
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import TO_AND_FRO
 from sk120stiff.explain.localise.words import microns
@@ -221,6 +222,11 @@ def _of_a_change(answer: Explanation, pose: str) -> str:
     )
 
 
+def _not_foretold(answer: Explanation) -> bool:
+    """Are other poses foretold no better with what the remainder goes with?"""
+    return any(NOT_FORETOLD in said for said in answer.remainder.where)
+
+
 def _of_the_remainder(answer: Explanation) -> str:
     """What would tell more of what is left."""
     place = accounted(answer)
@@ -231,12 +237,17 @@ def _of_the_remainder(answer: Explanation) -> str:
         )
     if place is not None and (since := changed_at(place)):
         return _of_a_change(answer, since)
+    most = mostly_accounted(answer)
+    if (shows := place or most) and not changed_at(shows) and _not_foretold(answer):
+        return (
+            f"The rest shows most with {shows}, but poses left out are foretold no better with it: "
+            "read at more poses and loads that change it, before anything is mended there."
+        )
     if place is not None:
         return (
             f"The rest goes with {place}, and beside that only noise is left: look there, and read "
             "at more poses and loads that change it, so that its law shows."
         )
-    most = mostly_accounted(answer)
     if most is not None and (since := changed_at(most)):
         return _of_a_change(answer, since)
     if most is not None:

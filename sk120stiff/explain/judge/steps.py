@@ -22,6 +22,7 @@ from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
 from sk120stiff.measurements import Measurements
 
 TRIED = 6  # sets whose fit may be refused before springs alone have to do
+NOT_FORETOLD = "that is where it shows, but how it goes on there is not known"
 NARROW = 4  # models kept at each size of a search in one part: it is there to choose, not to rank
 
 
@@ -117,7 +118,7 @@ def _foretold(what: str, gap: float, without: float) -> tuple[str, ...]:
     if not np.isfinite([gap, without]).all():
         return ()
     both = f"to {1e6 * gap:.3g} µm rms per axis with it and to {1e6 * without:.3g} without"
-    but = "" if gap < without else ": that is where it shows, but how it goes on there is not known"
+    but = "" if gap < without else f": {NOT_FORETOLD}"
     return (f"{what} foretold {both}{but}.",)
 
 
