@@ -53,6 +53,13 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
     assert {row["pose"] for row in more["poses"]} == {"next_1", "next_2", "next_3"}
 
 
+def test_a_spring_whose_error_is_larger_than_itself_is_said_to_be_hardly_told(run) -> None:
+    asked = ("--count", "8", "--payload", "0; 0.5 kg", "--candidates", "40", "--noise", "20 um")
+    told = run("plan", MODEL, "--positions", *asked)
+    assert told.code == 0
+    assert "joint_3_u.stiffness will hardly be told: its error is larger than itself" in told.stdout
+
+
 def test_payloads_stand_by_positions(run) -> None:
     wrong = run("plan", MODEL, "--count", "4", "--payload", "5 kg")
     assert wrong.code == 2 and "Add --positions" in wrong.stderr

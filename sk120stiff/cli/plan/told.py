@@ -54,6 +54,8 @@ def _parameters(plan: Plan) -> Told:
             blind.append(f"{p.name} cannot be seen: {why}.")
             rows.append((p.name, p.value, "cannot be seen", unit))
             continue
+        if p.effect.joint_spring and item.std > p.internal:
+            blind.append(f"{p.name} will hardly be told: its error is larger than itself.")
         shown = (public, unit) if np.isfinite(public) else (item.std, p.spec.internal_unit)
         rows.append((p.name, p.value, *shown))
     document: dict[str, object] = {
