@@ -104,8 +104,10 @@ def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurem
 
     Raises:
         Refusal: No passive arm explains half of the readings and their noise does not excuse it, or
-            the stated uncertainty is larger than the readings and than anything they show.
+            the stated uncertainty is larger than the readings and than anything they show, or most
+            joints stand turns beyond their limits.
     """
+    _refuse_turns_beyond(doubts, model.robot, measurements)
     sheet = sheet_of(model.robot, of_one_marker(measurements))
     if sheet is None or not sheet.exists() or not sheet.moves:
         return
@@ -128,6 +130,23 @@ def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurem
         f"readings ({size} rms per axis, of which {left} remain)",
         where=where,
         remedy=remedy,
+    )
+
+
+def _refuse_turns_beyond(doubts: DataChecks, robot: Robot, measurements: Measurements) -> None:
+    """Joints more than a turn beyond their limits at most readings: they are in another unit."""
+    joints = measurements.with_joints(robot.actuated, robot.kinds).joints[measurements.use]
+    away = np.maximum(robot.lower - joints, joints - robot.upper)
+    turns = np.isfinite(away) & (away > 2.0 * np.pi) & ~np.array(robot.prismatic)
+    if turns.any(axis=1).mean() <= HALF:
+        return
+    raise Refusal(
+        f"at {int(turns.any(axis=1).sum())} of {len(joints)} readings joints stand more than a "
+        f"turn beyond their limits, {robot.actuated[int(turns.sum(axis=0).argmax())]} first",
+        where=str(measurements.path or "the measurements"),
+        remedy="Check the unit in the headers of the joint columns, [deg] or [rad]."
+        if doubts.slip is None
+        else f"It looks as if: {doubts.slip.said}. {doubts.slip.remedy}",
     )
 
 

@@ -34,6 +34,7 @@ ALIKE = 1.05  # times as much left by a turn of the base, which is told rather t
 STEPS = 3  # slips told of one file
 SPARE = 6  # numbers beyond the compliances that it takes to judge a fit
 CONVENTION = 8  # joints at most whose signs are tried together: 2ⁿ choices
+MOST = 0.9999  # share that is told at most: no arm explains everything
 MANY = 300  # readings that suffice to rank many corrections at once
 
 
@@ -58,8 +59,8 @@ class Slip:
         """What looks wrong, without a full stop."""
         what = "; ".join(correction.said for correction in self.corrections)
         return (
-            f"{what} (the arm's springs and bearings could then explain {self.after:.3g} of the "
-            f"readings' squares, as they stand {self.before:.3g})"
+            f"{what} (of the readings' squares the arm's springs and bearings could then explain "
+            f"{100.0 * min(self.after, MOST):.4g} %, as they stand {100.0 * self.before:.3g} %)"
         )
 
     @property

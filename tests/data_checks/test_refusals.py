@@ -43,6 +43,15 @@ def test_the_refusal_names_the_slip_that_it_comes_from() -> None:
     assert "reverse order" in str(said.remedy) and "upside down" in str(said.remedy)
 
 
+def test_joints_turns_beyond_their_limits_are_refused() -> None:
+    """Degrees labelled rad: no pose of these was ever driven."""
+    known = ARMS["ur5"]()
+    data = replace(known.readings, joints=np.degrees(known.readings.joints))
+    said = refused(known, data)
+    assert "more than a turn beyond their limits" in said.what
+    assert "deg labelled rad" in str(said.remedy) or "[deg] or [rad]" in str(said.remedy)
+
+
 @pytest.mark.parametrize("sigma", [10.0, 2e-3])
 def test_a_sigma_above_the_readings_is_refused(sigma: float) -> None:
     known = ARMS["sk120"]()
