@@ -3,7 +3,6 @@
 from sk120stiff.effects.base import (
     Effect,
     Elastic,
-    Elongation,
     Geometric,
     Imposed,
     LinearElastic,
@@ -15,6 +14,7 @@ from sk120stiff.effects.base import (
     Weighing,
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
+from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec

@@ -32,6 +32,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
@@ -143,7 +144,14 @@ class Effect(ABC):
         return self.says.format(where=self.where)
 
     def told(self, values: Mapping[str, float]) -> str:
-        """`sentence`, where values of the parameters by name say more of it."""
+        """`sentence`, where values of the parameters by name say more of it.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> gear = sk.effect(sk.load_robot("motoman_sk120"), "gear_hardening", "joint_2_l")
+            >>> gear.told({"quadratic": 1e-9, "cubic": 0.0})
+            'The gear of joint_2_l hardens: it gets stiffer as its torque grows.'
+        """
         return self.sentence()
 
     @property
@@ -193,21 +201,6 @@ class Effect(ABC):
     def nearby_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """Laws close to this one, once it is in the model; not beside model-form error."""
         return ()
-
-
-@dataclass(frozen=True, eq=False)
-class Elongation:
-    """What an elastic law returns for k coordinates and P parameters.
-
-    Attributes:
-        value: (N, k) elongation [rad or m].
-        by_torque: (N, k, k) tangent compliance.
-        by_parameter: (N, k, P) derivative by the internal parameters.
-    """
-
-    value: Array
-    by_torque: Array
-    by_parameter: Array
 
 
 class Elastic(Effect):

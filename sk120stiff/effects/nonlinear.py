@@ -26,10 +26,10 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
     Effect,
     Elastic,
-    Elongation,
     LinearElastic,
     scale_of,
 )
+from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec

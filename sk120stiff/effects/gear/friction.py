@@ -10,10 +10,10 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects.base import (
-    Elongation,
     Switching,
     scale_of,
 )
+from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
 from sk120stiff.effects.gear.lost_motion import LostMotion
 from sk120stiff.effects.load_cases import IDLE, LoadCases

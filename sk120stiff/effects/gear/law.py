@@ -9,7 +9,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Elastic, Elongation, scale_of
+from sk120stiff.effects.base import Elastic, scale_of
+from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError

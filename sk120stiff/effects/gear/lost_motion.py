@@ -9,7 +9,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Elongation, Switching, scale_of
+from sk120stiff.effects.base import Switching, scale_of
+from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options

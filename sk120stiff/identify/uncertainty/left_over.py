@@ -98,9 +98,12 @@ def left_over(fit: Fit) -> LeftOver:
     largest, larger = end(INTERVAL, WIDEST), end(ONE, WIDEST)
     low = 0.0 if smallest is None else min(left.of_sizes(*smallest)[0], rms)
     high = np.inf if largest is None else max(left.of_sizes(*largest)[2], rms)
-    if found.form:  # no structure is known to the last reading
-        high = _with_single_readings(rms, high, _in_single_readings(laid, deviance, found))
     upper = np.inf if larger is None else max(larger[0].rms(readings), rms)
+    unknown, hidden = np.isinf(deviance.slack), _in_single_readings(laid, deviance, found)
+    if found.form or unknown:  # no structure is known to the last reading
+        high = _with_single_readings(rms, high, hidden)
+    if unknown:  # what is taken for the noise may be the model's just as well
+        upper = float(np.hypot(upper, np.sqrt(hidden)))
     grows = found.form.rms(readings) ** 2 >= 2.0 * found.form.constant**2
     return LeftOver(rms, (low, high), upper, grows, found, found.probability)
 
@@ -148,16 +151,15 @@ def _in_single_readings(laid: LaidOut, deviance: Deviance, found: Components) ->
 
     Model-form error without any pattern looks like noise: what is left beside the random effects is
     the sum of both, and σ is known to so much of itself only. 97.5 % limit of the difference of two
-    variances (MOVER: Zou & Donner 2008); 0 where nothing but the gap tells the noise.
+    variances (MOVER: Zou & Donner 2008); where nothing but the gap tells the noise, all of it.
     """
-    freedom = deviance.freedom
-    if np.isinf(deviance.slack):
-        return 0.0
+    freedom, problem = deviance.freedom, laid.problem
+    size = sum(part[problem.read].mean() for part in problem.noise.variances(problem.measurements))
     square = deviance.unexplained(found.form.scaled(1.0 / found.noise_factor))
     both, most = square / freedom, square / float(stats.chi2.isf(0.975, freedom))
+    if np.isinf(deviance.slack):
+        return float(size) * both
     least = float(np.exp(-2.0 * NORMAL * deviance.slack))
-    problem = laid.problem
-    size = sum(part[problem.read].mean() for part in problem.noise.variances(problem.measurements))
     return float(size) * max(both - 1.0 + float(np.hypot(most - both, 1.0 - least)), 0.0)
 
 
