@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff import base_model, load_robot
+from sk120stiff import base_model, load_robot, predict
 from sk120stiff.explain import Options
 from sk120stiff.explain.judge.posterior import doubted_findings
-from sk120stiff.measurements import Measurements
+from sk120stiff.identify import fit, known_model
+from sk120stiff.measurements import Measurements, NoiseStatement
 from tests.explain.readings import answered, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.hidden.generator.world import Cause
@@ -58,3 +59,19 @@ def test_a_cause_that_other_poses_show_is_named_in_it(springs):
     strong, doubtful = ([each.probability / known for each in pair] for pair in beside)
     assert strong == pytest.approx([0.96, 0.96], abs=0.03)
     assert doubtful == pytest.approx([0.96, 0.90], abs=0.03)
+
+
+def test_what_nobody_called_noise_may_be_off_at_other_poses_too(springs):
+    """Foretold are displacements: what is left is held by their intervals, whatever it is."""
+    readings = pulled(3)
+    found = fit(springs, readings)
+    told = known_model(found).uncertainty.remainder
+    assert told.probability > 0.05 or told.significant
+    assert told.upper == pytest.approx(np.full(3, found.rms), rel=0.35)
+    stated = replace(readings, noise=NoiseStatement(sigma=found.rms / np.sqrt(2.0)))
+    sure = known_model(fit(springs, stated)).uncertainty.remainder
+    assert (sure.upper < 0.8 * told.upper).all()
+    others = replace(pulled(4), noise=readings.noise)
+    said = predict(known_model(found), others)
+    off = np.abs(said.displacement - others.displacement) / said.std
+    assert np.mean(off < 1.96) > 0.85

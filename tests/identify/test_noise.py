@@ -97,7 +97,7 @@ def test_an_effect_is_not_taken_for_noise(springs, robot) -> None:
         assert factor > 5.0
         J = plain.jacobian
         np.testing.assert_allclose(found.covariance, np.linalg.inv(J.T @ J) * factor**2, rtol=1e-6)
-        assert f"{factor:.3g} times" in fit_report(found)
+        assert f"√(χ²/degrees of freedom) is {factor:.3g}" in fit_report(found)
 
 
 def test_up_and_down_are_no_repeats(springs, robot) -> None:
