@@ -335,7 +335,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/findings.py", *tests("explain", "evidence"),
-        gains_never_by_chance=("special.erfc(max(errors, 0.0) / np.sqrt(2.0))", "special.erfc(99.0 + max(errors, 0.0))"),
+        gains_never_by_chance=("special.erfc(self.gain / max", "special.erfc(99.0 + self.gain / max"),
     ),
     *of(
         "explain/judge/judged_names.py", *tests("explain", "rough"),

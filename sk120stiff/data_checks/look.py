@@ -138,7 +138,7 @@ def _refuse_turns_beyond(doubts: DataChecks, robot: Robot, measurements: Measure
     joints = measurements.with_joints(robot.actuated, robot.kinds).joints[measurements.use]
     away = np.maximum(robot.lower - joints, joints - robot.upper)
     turns = np.isfinite(away) & (away > 2.0 * np.pi) & ~np.array(robot.prismatic)
-    if turns.any(axis=1).mean() <= HALF:
+    if not len(joints) or turns.any(axis=1).mean() <= HALF:
         return
     raise Refusal(
         f"at {int(turns.any(axis=1).sum())} of {len(joints)} readings joints stand more than a "

@@ -28,7 +28,7 @@ class Confirmation:
         folds_improved, folds: In how many of the folds the held-out misfit falls when the effect is
             added.
         gain, gain_error: Fall of the held-out misfit per reading axis [noise variances], and the
-            standard error over poses that it would have by chance.
+            standard error over poses that what is left gives it.
         frequency: Share of resamplings of the poses in which the same name (or an alternative of
             it) wins.
         rival_frequency: Share in which the most frequent of the other names wins.
@@ -48,17 +48,20 @@ class Confirmation:
 
     @property
     def chance(self) -> float:
-        """Probability that an effect which is not there gains as much; 0 where no pose can tell."""
-        errors = self.gain / self.gain_error if self.gain_error > 0.0 else np.inf
-        return float(special.erfc(max(errors, 0.0) / np.sqrt(2.0))) if self.foretells else 0.0
+        """At most so probable is it that what is left scatters by as much; 0: no pose can tell."""
+        if not self.foretells:
+            return 0.0
+        if self.gain <= 0.0:
+            return 1.0
+        return float(special.erfc(self.gain / max(self.gain_error, 1e-300) / np.sqrt(2.0)))
 
     @property
     def holds(self) -> bool:
         """The name may be given: other poses gain by it, and it wins on most drawings of the poses.
 
         Four of five folds have to gain. Three will do if the gain of all is positive, and fewer if
-        it goes beyond its own scatter: few poses may carry a small effect. Where no other name
-        comes near, a third of the drawings is enough: a weak effect drowns in some of them.
+        it goes beyond what the rest scatters: few poses may carry a small effect. Where no other
+        name comes near, a third of the drawings is enough: a weak effect drowns in some of them.
         """
         mostly = self.folds_improved >= 0.6 * self.folds or self.gain > self.gain_error
         gains = (

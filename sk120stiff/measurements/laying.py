@@ -167,7 +167,8 @@ def _left(clouds: Clouds, reached: Array, turns: Array, shifts: Array) -> Array:
 def _step(columns: Array, left: Array, kept: Mask, frames: int) -> Array:
     """(B, G, 3) step of the markers; none along what the positions do not tell."""
     columns = columns * np.repeat(kept, 3, axis=1)[..., None]
-    size = np.maximum(np.linalg.norm(columns, axis=1), 1e-300)
+    size = np.linalg.norm(columns, axis=1)
+    size[size == 0.0] = 1.0  # of a marker whose positions are all set aside
     columns = columns / size[:, None]
     across = columns.swapaxes(1, 2)
     values, ways = np.linalg.eigh(across @ columns)

@@ -128,6 +128,7 @@ def _moved(turns: Array, shifts: Array, at: Array, station: Index) -> Array:
 def _covariances(columns: Array, frames: int, variance: float) -> Array:
     """(S, 6, 6) of the unknowns of each frame; infinite where they are not determined."""
     size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
     _, values, vt = np.linalg.svd(columns / size, full_matrices=False)
     if values[-1] < _TOLD * values[0]:
         return np.full((frames // 6, 6, 6), np.inf)

@@ -59,6 +59,7 @@ def test_a_gain_that_noise_brings_as_often_is_chance():
     seen = confirming.confirm(reg, score_set(reg, reg.sums(), (0,)), 0, ())
     assert replace(seen, gain=1.96, gain_error=1.0).chance == pytest.approx(0.05, abs=1e-3)
     assert replace(seen, gain=-3.0, gain_error=1.0).chance == 1.0
+    assert replace(seen, gain=0.0, gain_error=0.0).chance == 1.0
     assert replace(seen, gain=-3.0, gain_error=1.0, foretells=False).chance == 0.0
 
 

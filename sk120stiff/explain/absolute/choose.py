@@ -66,7 +66,7 @@ def choose(linear: Linear, *, most: int = MOST) -> Chosen:
         left = linear.left_out(chosen, before)
         if gained > threshold(linear) and linear.left_out(others, after) < left:
             chosen, dropped = others, fallen
-    return Chosen(_beside_frames(linear, _zeros(linear, chosen), dropped), dropped)
+    return Chosen(_beside_frames(linear, _zeros(linear, chosen, dropped.keys()), dropped), dropped)
 
 
 def by_likeliest(linear: Linear, found: Chosen) -> Chosen:
@@ -79,7 +79,7 @@ def by_likeliest(linear: Linear, found: Chosen) -> Chosen:
         noise, rest = linear.noise(chosen), linear.less(chosen, e)
         if len(rest) < len(chosen) - 1:
             continue  # others rest on it
-        others = {e, *linear.may_join(rest)} - {*rest, *found.dropped}
+        others = {e, *(set(linear.may_join(rest)) - {*rest, *found.dropped})}
         odds = {c: linear.score((*rest, c), noise) + usual(linear.candidates[c]) for c in others}
         best = max(others, key=lambda c: odds[c])
         other = tuple(best if c == e else c for c in chosen)
@@ -183,7 +183,7 @@ def _together(linear: Linear, chosen: tuple[int, ...]) -> list[tuple[int, ...]]:
     return [step for step in (frames, springs, (*frames, *springs)) if len(step) > 1]
 
 
-def _zeros(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
+def _zeros(linear: Linear, chosen: tuple[int, ...], dropped: Set[int]) -> tuple[int, ...]:
     """A joint's zero in the place of a frame, where it is the likelier and poses left out agree.
 
     Beside the large gap at the start six numbers may take off more than one; in the end one tells.
@@ -191,7 +191,7 @@ def _zeros(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
     zeros = [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_offset"]
     for e in [frame for frame in frames_of(linear) if frame in chosen]:
         noise, rest = linear.noise(chosen), linear.less(chosen, e)
-        others = {z: linear.score((*rest, z), noise) for z in zeros if z not in chosen}
+        others = {z: linear.score((*rest, z), noise) for z in zeros if z not in {*chosen, *dropped}}
         best = max(others, key=lambda z: others[z], default=e)
         if best == e or others[best] < linear.score(chosen, noise):
             continue

@@ -14,7 +14,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import Evidence, Finding
-from sk120stiff.explain.judge.confirm import UNTRIED, confirm
+from sk120stiff.explain.judge.confirm import UNTRIED, confirm, unconfirmed
 from sk120stiff.explain.judge.posterior import posterior
 from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
 from sk120stiff.explain.select.beam import exchanged, in_its_place
@@ -163,7 +163,7 @@ def findings_of(
             said = findings[place].evidence.confirmation
             if said.holds and (found.regression.sigma_known or said.chance < EVEN):
                 continue
-            objection = Fallen(findings[place].effect.id, _unconfirmed(findings[place]))
+            objection = Fallen(findings[place].effect.id, unconfirmed(findings[place]))
         return tuple(findings), objection
     return tuple(findings), None
 
@@ -242,16 +242,6 @@ def unit(regression: Regression, model: Scored) -> float:
     if regression.sigma_known:
         return 1.0
     return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
-
-
-def _unconfirmed(finding: Finding) -> str:
-    seen = finding.evidence.confirmation
-    folds = f"better in {seen.folds_improved} of {seen.folds} folds, " if seen.foretells else ""
-    return (
-        f"{finding.effect.id} fits best, but other poses do not confirm it ({folds}the same name "
-        f"in {100.0 * seen.frequency:.0f} % of resamplings, the next in "
-        f"{100.0 * seen.rival_frequency:.0f} %); it is not named."
-    )
 
 
 def _stronger(found: Selection, findings: list[Finding], place: int) -> Finding | None:

@@ -12,7 +12,7 @@ from scipy import stats
 from sk120stiff.arrays import Array, Index
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.candidates.sums import Sums
-from sk120stiff.explain.findings import Confirmation
+from sk120stiff.explain.findings import Confirmation, Finding
 from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import Scored, score_set, score_sets
 from sk120stiff.identify import drawn_parts
@@ -163,3 +163,19 @@ def _winner(
     laws = start | scored[best].by_variant | {effect: scored[effect].by_variant[effect]}
     both = score_set(regression, sums, (*rest, best, effect), start=laws, only=())
     return effect if both.plausible and fair[best] - both.score > WANTED else best
+
+
+def unconfirmed(finding: Finding) -> str:
+    """Why a name falls by what other poses say of it, in a sentence."""
+    seen = finding.evidence.confirmation
+    if seen.holds:
+        return (
+            f"{finding.effect.id} fits, but what it takes off at poses left out the scatter of the "
+            f"rest takes off as often as not (p = {seen.chance:.2f}); it is not named."
+        )
+    folds = f"better in {seen.folds_improved} of {seen.folds} folds, " if seen.foretells else ""
+    return (
+        f"{finding.effect.id} fits best, but other poses do not confirm it ({folds}the same name "
+        f"in {100.0 * seen.frequency:.0f} % of resamplings, the next in "
+        f"{100.0 * seen.rival_frequency:.0f} %); it is not named."
+    )

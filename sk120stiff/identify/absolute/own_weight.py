@@ -1,8 +1,8 @@
 """What the own weight of an arm whose URDF states no masses may do to positions.
 
-The first moment of each link, mass times centre, turns every joint below it by its torque times the
-joint's compliance. What nobody stated is of the size of what the arm lifts: a payload at full reach
-turns the joints of an arm about as much as its links do.
+The mass of each link, and its first moment (mass times centre), bend every joint below it by their
+torque times the joint's compliance. What nobody stated is of the size of what the arm lifts: a
+payload at full reach turns the joints of an arm about as much as its links do.
 """
 
 from __future__ import annotations
@@ -24,11 +24,12 @@ def heaviest_payload(problem: PoseProblem) -> float:
 
 
 def own_weight(problem: PoseProblem, heaviest: float | None = None) -> Array:
-    """(M, 3 m) change of each number by the moments of m links about three directions of theirs.
+    """(M, 4 m) change of each number by the masses of m links and their moments along three
+    directions.
 
-    Each is as large as the heaviest payload [kg], by default that of the readings, at the reach
-    beyond its joint. No columns where the arm's masses are stated, nothing hangs on it, or what a
-    load does alone was read.
+    A mass is that of the heaviest payload [kg], by default that of the readings; a moment is that
+    mass at the reach beyond the link's joint, stretched out. No columns where the arm's masses are
+    stated, nothing hangs on it, or what a load does alone was read.
     """
     robot = problem.model.robot
     none = np.zeros((len(problem.rows), 0))
@@ -46,20 +47,29 @@ def own_weight(problem: PoseProblem, heaviest: float | None = None) -> Array:
         return none
     joints, c = list(springs), np.array(list(springs.values()))
     slope = problem.by_joints[:, joints] * c  # (M, springs)
-    torques = np.stack(turned, axis=-1)[problem.rows][:, joints]  # (M, springs, 3 m)
+    torques = np.stack(turned, axis=-1)[problem.rows][:, joints]  # (M, springs, 4 m)
     return np.asarray(np.einsum("ms,msk->mk", slope, torques))
 
 
 def _torques(problem: PoseProblem, heaviest: float) -> Iterator[Array]:
-    """(N, n) torques on the coordinates by each moment of each link [N·m]."""
+    """(N, n) torques on the coordinates by each mass and each moment of each link [N·m or N]."""
     robot, cases = problem.model.robot, problem.load_cases
-    screws, g = robot.screws(cases.a), robot.gravity_in_base
+    screws, weight = robot.screws(cases.a), heaviest * robot.gravity_in_base
+    lengths = np.linalg.norm(robot.mechanism().chain.placements[:, :3, 3], axis=1)
+
+    def on_coordinates(on_joints: Array, j: int) -> Array:
+        return np.asarray((on_joints[:, None] @ screws.first[..., : j + 1, :])[:, 0])
+
     for j in range(screws.axes.shape[-2]):
-        reach = np.linalg.norm(screws.position - screws.origins[:, j], axis=1).max()
+        origins, angular = screws.origins[:, : j + 1], screws.angular[:, : j + 1]
+        lever = origins[:, j : j + 1] - origins
+        along = np.where(screws.revolute[: j + 1, None], 0.0, screws.axes[:, : j + 1]) @ weight
+        about = cross_product(lever, np.broadcast_to(weight, lever.shape))
+        yield on_coordinates(along + (angular * about).sum(-1), j)
+        reach = float(lengths[j + 1 :].sum())
         for way in _of_link(screws.axes, screws.origins, screws.rotation, j):
-            moment = heaviest * float(reach) * cross_product(way, np.broadcast_to(g, way.shape))
-            about = (screws.angular[:, : j + 1] * moment[:, None]).sum(-1)  # (N, j + 1)
-            yield (about[:, None] @ screws.first[..., : j + 1, :])[:, 0]
+            moment = reach * cross_product(way, np.broadcast_to(weight, way.shape))
+            yield on_coordinates((angular * moment[:, None]).sum(-1), j)
 
 
 def _of_link(axes: Array, origins: Array, tool: Array, j: int) -> tuple[Array, Array, Array]:

@@ -45,7 +45,8 @@ class LeftOver:
         rms: What is left of the readings of the fit, rms per axis [m].
         interval: 95 % interval of `rms`.
         upper: Size of such random effects at poses like these, rms per axis, with one standard
-            error more: what they may be at other poses [m].
+            error more: what they may be at other poses [m]. Where nothing but the gap tells the
+            noise, that too: it may be the model's.
         grows: More of it goes in proportion to the load than is constant.
         found: How it goes with the load at single poses.
         probability: Of as much where there is noise alone.
@@ -99,11 +100,11 @@ def left_over(fit: Fit) -> LeftOver:
     low = 0.0 if smallest is None else min(left.of_sizes(*smallest)[0], rms)
     high = np.inf if largest is None else max(left.of_sizes(*largest)[2], rms)
     upper = np.inf if larger is None else max(larger[0].rms(readings), rms)
-    unknown, hidden = np.isinf(deviance.slack), _in_single_readings(laid, deviance, found)
+    unknown = np.isinf(deviance.slack)
     if found.form or unknown:  # no structure is known to the last reading
-        high = _with_single_readings(rms, high, hidden)
+        high = _with_single_readings(rms, high, _in_single_readings(laid, deviance, found))
     if unknown:  # what is taken for the noise may be the model's just as well
-        upper = float(np.hypot(upper, np.sqrt(hidden)))
+        upper = float(np.sqrt(upper**2 + _beside_structure(laid, deviance, found)))
     grows = found.form.rms(readings) ** 2 >= 2.0 * found.form.constant**2
     return LeftOver(rms, (low, high), upper, grows, found, found.probability)
 
@@ -153,14 +154,25 @@ def _in_single_readings(laid: LaidOut, deviance: Deviance, found: Components) ->
     the sum of both, and σ is known to so much of itself only. 97.5 % limit of the difference of two
     variances (MOVER: Zou & Donner 2008); where nothing but the gap tells the noise, all of it.
     """
-    freedom, problem = deviance.freedom, laid.problem
-    size = sum(part[problem.read].mean() for part in problem.noise.variances(problem.measurements))
-    square = deviance.unexplained(found.form.scaled(1.0 / found.noise_factor))
-    both, most = square / freedom, square / float(stats.chi2.isf(0.975, freedom))
+    both, size = _beside_structure(laid, deviance, found), _variance(laid)
+    most = both * deviance.freedom / float(stats.chi2.isf(0.975, deviance.freedom))
     if np.isinf(deviance.slack):
-        return float(size) * both
-    least = float(np.exp(-2.0 * NORMAL * deviance.slack))
-    return float(size) * max(both - 1.0 + float(np.hypot(most - both, 1.0 - least)), 0.0)
+        return most
+    least = size * float(np.exp(-2.0 * NORMAL * deviance.slack))
+    return max(both - size + float(np.hypot(most - both, size - least)), 0.0)
+
+
+def _beside_structure(laid: LaidOut, deviance: Deviance, found: Components) -> float:
+    """Variance of one reading's axis beside the random effects of poses [m²]."""
+    square = deviance.unexplained(found.form.scaled(1.0 / found.noise_factor))
+    return _variance(laid) * square / deviance.freedom
+
+
+def _variance(laid: LaidOut) -> float:
+    """Of the noise assumed, of one reading's axis on average [m²]."""
+    problem = laid.problem
+    parts = problem.noise.variances(problem.measurements)
+    return float(sum(part[problem.read].mean() for part in parts))
 
 
 @dataclass(frozen=True, eq=False)

@@ -93,12 +93,14 @@ def last_mode(
         return "positions", f"Positions were asked for ({OPTION} positions)."
     other = f"{OPTION} displacements makes differences of them, which show springs alone."
     if turns:
-        return "positions", other
+        return "positions", f"With orientations positions stay, for these show turns. {other}"
     if draft.loads.payload is None:
         return "load pairs", f"Of rows under other forces differences are made. {_KEEP}"
     fitted = laid.fitted
-    poses = len(set(draft.pose)) if fitted is None else len(laid.rows)
-    if fitted is None or poses < ENOUGH:
+    if fitted is None:
+        return "load pairs", f"The robot could not be laid onto these positions. {_KEEP}"
+    poses = len(laid.rows)
+    if poses < ENOUGH:
         few = "differences tell springs as well as positions do"
         more = f"from {ENOUGH} on positions under payloads stay"
         return "load pairs", f"Of {poses} poses {few}; {more}. {_KEEP}"
@@ -109,7 +111,7 @@ def last_mode(
             "Loads rise and fall, and friction is sought in displacements alone: differences are "
             f"made. {_KEEP}"
         )
-    return "positions", other
+    return "positions", f"Positions under payloads tell geometry and springs together. {other}"
 
 
 def _both_ways(draft: Draft) -> bool:

@@ -171,7 +171,7 @@ def _evidence(finding: Finding) -> Table:
         (
             "Held-out poses",
             f"better in {c.folds_improved} of {c.folds} folds",
-            f"misfit per axis falls by {gain} noise variances (± standard error over poses)",
+            f"misfit per axis falls by {gain} noise variances (± what the rest makes by chance)",
         ),
         (
             "Poses drawn again",
