@@ -229,7 +229,8 @@ def test_a_second_law_of_a_gear_must_show_by_more_than_its_law_is_inexact(spring
     whole = length(found, bend, [bend])
     assert whole == pytest.approx(np.sqrt(first.evidence.misfit_gain), rel=1e-6)
     assert np.sqrt(8.0) < CURVE * whole < np.sqrt(50.0)
-    slight, strong = (replace(first.evidence, misfit_gain=g) for g in (gain, 60.0))
+    sure = {each.id: 1.0 for each in (bend, play, elsewhere)}
+    slight, strong = (replace(first.evidence, misfit_gain=g, odds=sure) for g in (gain, 60.0))
     second = replace(first, effect=play, evidence=slight)
     first = replace(first, evidence=strong)
     said = objection(found, [second, first], 0, -np.inf)

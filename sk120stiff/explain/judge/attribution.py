@@ -29,7 +29,7 @@ NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in 
 CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
-EVEN = 0.5  # chance that nothing gains as much at other poses, where nobody said what the noise is
+EVEN = 0.5  # probability of a name below which it is none, and of chance above which it is that
 SOME = 0.05  # share of the drawings of the poses from which on a law of the same gear counts
 NUMBER = re.compile(r"\d+(\.\d+)?")
 
@@ -202,6 +202,12 @@ def _objection(
             name,
             f"{name} fits, but so do {len(finding.others)} other names; the readings do not tell "
             "what it is, and it is not named.",
+        )
+    if finding.probability < EVEN:
+        return Fallen(
+            name,
+            f"{name} fits a little better, but by its evidence is less likely at work than not; it "
+            "is not named.",
         )
     if finding.gain < least:
         return Fallen(

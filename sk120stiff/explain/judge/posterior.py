@@ -19,6 +19,7 @@ from sk120stiff.explain.priors import FALLEN, FURTHER_IMPOSTOR, IMPOSTOR
 from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import score_set
 
+USUAL_LEVEL = 0.05  # of chance, up to which a gain is significant as the word is used
 LISTED = 0.01  # probability from which on a candidate is worth a line
 NONE = "none"  # of the catalogue
 LOOKED_AT = 24  # candidates that are scored
@@ -70,9 +71,9 @@ def doubted_findings(
 ) -> tuple[Finding, ...]:
     """The findings, the strongest first, each as probable as all that speaks against it lets it be.
 
-    Beside a cause without a name the strongest seldom imitates a part of it; a further name may, as
-    far as its gain at poses left out may be chance. Where nobody said how large the noise is, those
-    poses are the only witness that what a name takes off is no noise.
+    Beside a cause without a name the strongest seldom imitates a part of it; a further name may,
+    unless its gain at poses left out is beyond chance. Where nobody said how large the noise is,
+    those poses are the only witness that what a name takes off is no noise.
 
     Args:
         findings: By their evidence.
@@ -83,7 +84,8 @@ def doubted_findings(
     out = []
     for k, each in enumerate(findings):
         chance = each.evidence.confirmation.chance
-        imitates = IMPOSTOR + (FURTHER_IMPOSTOR - IMPOSTOR) * chance * (k > 0)
+        further = (FURTHER_IMPOSTOR - IMPOSTOR) * min(chance / USUAL_LEVEL, 1.0)
+        imitates = IMPOSTOR + further * (k > 0)
         one_cause = sum(part.probability for part in together if each.effect.id in part.ids)
         found = each.doubted(imitates * something_else).doubted(one_cause)
         out.append(in_full(found if noise_known else found.doubted(chance)))
