@@ -22,11 +22,12 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.beside_suspect import Account
+from sk120stiff.explain.judge.goes_with import Foretold
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.judged_names import adequacy_of, judged_names
 from sk120stiff.explain.judge.one_gear import WORTH_A_SENTENCE, Imitated, imitated_together
 from sk120stiff.explain.judge.posterior import doubted, doubted_findings, one_more
-from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.explain.judge.remainder import Remainder, remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file, gap_steps
@@ -141,15 +142,15 @@ def explain_displacements(
     final = with_selection_uncertainty(found, findings, beside)
     verdict = _verdict(findings, left)
     steps = gap_steps(found, effects, holdout, seed=options.seed)
+    if remainder.significant and account is None:
+        remainder = _where_it_shows(remainder, held_against(noise, found.final))
+    elif remainder.significant and account is not None:
+        foretold = _worth_of_the_suspect(
+            account, found, effects, holdout, steps[-1].heldout_rms, options.seed
+        )
+        remainder = replace(remainder, goes_with=replace(account.goes_with(), foretold=foretold))
     if remainder.significant:
-        lives = where_sentences(localise(held_against(noise, found.final)))
-        if account is not None:  # of another suspect in its place no more need be said
-            lives = (*lives[:1], account.sentence())
-        if account is not None:
-            lives += _worth_of_the_suspect(
-                account, found, effects, holdout, steps[-1].heldout_rms, options.seed
-            )
-        remainder = replace(remainder, where=(*lives[1 : 1 + TOLD], *left.of_time))
+        remainder = replace(remainder, shows=(*remainder.shows, *left.of_time))
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
@@ -187,6 +188,13 @@ def explain_displacements(
     return completed(answer, found.regression, seed=options.seed, cell=options.cell)
 
 
+def _where_it_shows(remainder: Remainder, final: Fit) -> Remainder:
+    """The remainder with what is seen of its place in the gap of the final fit."""
+    found = localise(final)
+    closest = None if found.strongest is None else found.strongest.name
+    return replace(remainder, shows=where_sentences(found)[1 : 1 + TOLD], closest=closest)
+
+
 def _worth_of_the_suspect(
     account: Account,
     found: Selection,
@@ -194,7 +202,7 @@ def _worth_of_the_suspect(
     holdout: Measurements | None,
     without: float,
     seed: int,
-) -> tuple[str, ...]:
+) -> Foretold | None:
     """How much nearer other poses are foretold with it."""
     beside = account.beside
     if holdout is None:

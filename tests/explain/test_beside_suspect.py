@@ -1,7 +1,6 @@
 """A known cause beside one that the catalogue lacks: both have their place in the model."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +11,10 @@ from sk120stiff.explain import explain
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.judge.attribution import Fallen, Named
 from sk120stiff.explain.judge.beside_suspect import (
-    Account,
     _holds,
     _with_the_last_fallen,
 )
+from sk120stiff.explain.judge.goes_with import NOT_FORETOLD, GoesWith, foretold
 from sk120stiff.explain.judge.nuisance import nuisance
 from sk120stiff.explain.select.stepwise import select
 from sk120stiff.measurements import NoiseStatement
@@ -87,17 +86,21 @@ def test_a_name_stands_beside_a_cause_without_one(springs):
 
 @pytest.mark.parametrize(("left", "said"), [(6e-6, "Most of it goes"), (8e-6, "Part of it goes")])
 def test_most_of_it_is_more_than_half_of_its_squares(left: float, said: str) -> None:
-    def beside(rms: float):
-        form = SimpleNamespace(rms=lambda _: rms)
-        problem = SimpleNamespace(noise=SimpleNamespace(form=form), measurements=None)
-        return SimpleNamespace(problem=problem)
-
-    without = SimpleNamespace(final=beside(1e-5))
-    account = Account(without, Named((), ()), "the moon", beside(left), left)
-    assert account.sentence() == (
+    goes_with = GoesWith("the moon", left, 1e-5, beside_names=False)
+    assert goes_with.sentences() == (
         f"{said} with the moon: with that in the model, {1e6 * left:.3g} µm rms per axis are left "
-        "beyond the noise."
+        "beyond the noise.",
     )
+    assert goes_with.most == (said == "Most of it goes")
+
+
+@pytest.mark.parametrize("gap", [4e-6, 6e-6])
+def test_what_foretells_other_poses_no_better_is_no_law(gap: float) -> None:
+    told = foretold("Poses that are left out are", gap, 5e-6)
+    assert told is not None
+    assert told.better == (gap < 5e-6) == (NOT_FORETOLD not in told.sentence())
+    assert f"to {1e6 * gap:.3g} µm rms per axis with it and to 5 without" in told.sentence()
+    assert foretold("Poses that are left out are", float("nan"), 5e-6) is None
 
 
 def test_a_name_shows_beside_a_cause_that_takes_most_of_the_rest(springs):

@@ -15,6 +15,7 @@ from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding, TaskBudget, sentence_in
+from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -125,6 +126,18 @@ def remainder_document(answer: Explanation) -> dict[str, Any]:
         "proportional": left.form.proportional,
         "constant_um": micrometres(left.form.constant),
         "where": list(left.where),
+        "goes_with": None if left.goes_with is None else _goes_with(left.goes_with),
+    }
+
+
+def _goes_with(place: GoesWith) -> dict[str, Any]:
+    """What the remainder goes with, and how near other readings are foretold with it."""
+    foretold = place.foretold
+    return {
+        "name": place.suspect,
+        "left_um": micrometres(place.left),
+        "foretold_um": None if foretold is None else micrometres(foretold.gap),
+        "foretold_without_um": None if foretold is None else micrometres(foretold.without),
     }
 
 

@@ -11,9 +11,8 @@ from sk120stiff.errors import listed
 from sk120stiff.explain.answer.drifting import steady_offsets
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
-from sk120stiff.explain.judge.steps import NOT_FORETOLD
 from sk120stiff.explain.localise.changes import changed_at
-from sk120stiff.explain.localise.suspects import TO_AND_FRO
+from sk120stiff.explain.localise.suspects import comes_and_goes
 from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
@@ -222,15 +221,11 @@ def _of_a_change(answer: Explanation, pose: str) -> str:
     )
 
 
-def _not_foretold(answer: Explanation) -> bool:
-    """Are other poses foretold no better with what the remainder goes with?"""
-    return any(NOT_FORETOLD in said for said in answer.remainder.where)
-
-
 def _of_the_remainder(answer: Explanation) -> str:
     """What would tell more of what is left."""
-    place = accounted(answer)
-    if any(TO_AND_FRO in said for said in (place or "", *answer.remainder.where)):
+    left, place = answer.remainder, accounted(answer)
+    closest = left.closest if left.goes_with is None else left.goes_with.suspect
+    if comes_and_goes(closest or ""):
         return (
             "The rest comes and goes with the time: read the zero again before every load, and "
             "keep sun, draughts and air conditioning from arm and instrument."
@@ -238,7 +233,9 @@ def _of_the_remainder(answer: Explanation) -> str:
     if place is not None and (since := changed_at(place)):
         return _of_a_change(answer, since)
     most = mostly_accounted(answer)
-    if (shows := place or most) and not changed_at(shows) and _not_foretold(answer):
+    foretold = None if left.goes_with is None else left.goes_with.foretold
+    borne_out = foretold is None or foretold.better
+    if (shows := place or most) and not changed_at(shows) and not borne_out:
         return (
             f"The rest shows most with {shows}, but poses left out are foretold no better with it: "
             "read at more poses and loads that change it, before anything is mended there."

@@ -14,26 +14,21 @@ if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
     from sk120stiff.explain.findings import Finding
 
-GOES, ALL_OF_IT = "It goes with ", "nothing is left beyond the noise"
-MOSTLY = "Most of it goes with "
 APART = 0.01  # share by which two figures of one gap may differ unexplained
 WORSE = 1.5  # times as large held out as fitted: worth a sentence
 
 
 def accounted(answer: Explanation) -> str | None:
     """What all of the remainder goes with; None where nothing leaves no more than noise."""
-    for sentence in answer.remainder.where:
-        if sentence.startswith(GOES) and ALL_OF_IT in sentence:
-            return sentence.removeprefix(GOES).partition(":")[0]
-    return None
+    goes_with = answer.remainder.goes_with
+    return goes_with.suspect if goes_with is not None and goes_with.whole else None
 
 
 def mostly_accounted(answer: Explanation) -> str | None:
     """What most of the remainder goes with, beside which the names were judged; None: nothing."""
-    for sentence in answer.remainder.where:
-        if sentence.startswith(MOSTLY):
-            return sentence.removeprefix(MOSTLY).partition(":")[0]
-    return None
+    goes_with = answer.remainder.goes_with
+    partly = goes_with is not None and not goes_with.whole and goes_with.most
+    return goes_with.suspect if goes_with is not None and partly else None
 
 
 def told_next(answer: Explanation, finding: Finding) -> bool:

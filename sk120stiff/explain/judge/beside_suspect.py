@@ -29,6 +29,7 @@ from sk120stiff.explain.judge.attribution import (
     with_the_strongest,
 )
 from sk120stiff.explain.judge.beside_form import unless_imitating, with_model_form
+from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.explain.judge.nuisance import Nuisance, nuisance
 from sk120stiff.explain.localise.places import line_up, look_at, ranked
 from sk120stiff.explain.select.beam import beam_search
@@ -64,15 +65,10 @@ class Account:
     beside: Selection
     left: float = 0.0
 
-    def sentence(self) -> str:
-        """Where the remainder lives."""
-        beside = "with that beside the names" if self.named.findings else "with that in the model"
-        if not self.left:
-            return f"It goes with {self.suspect}: {beside}, nothing is left beyond the noise."
-        part = "Most" if self.left**2 < 0.5 * _form_of(self.selection.final) ** 2 else "Part"
-        return (
-            f"{part} of it goes with {self.suspect}: {beside}, {1e6 * self.left:.3g} µm rms per "
-            "axis are left beyond the noise."
+    def goes_with(self) -> GoesWith:
+        """What the remainder goes with."""
+        return GoesWith(
+            self.suspect, self.left, _form_of(self.selection.final), bool(self.named.findings)
         )
 
 

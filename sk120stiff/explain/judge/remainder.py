@@ -15,6 +15,7 @@ from scipy.special import logit as _logit
 
 from sk120stiff.errors import two_digits
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.priors import SOMETHING_ELSE
 from sk120stiff.identify import Fit
@@ -31,13 +32,23 @@ class Remainder:
 
     Attributes:
         left: Its size and how sure it is; the model's file has the same.
-        where: Where it lives, in sentences.
+        shows: Where it shows, in sentences; what it goes with says more where that is known.
+        closest: The suspect that it goes with most closely; None: there is none, or not asked.
+        goes_with: That beside which less of it is left, or nothing; None: there is none.
         something_else: Probability that a cause is at work which no effect in the model is.
     """
 
     left: LeftOver
-    where: tuple[str, ...] = ()
+    shows: tuple[str, ...] = ()
+    closest: str | None = None
+    goes_with: GoesWith | None = None
     something_else: float = 0.0
+
+    @property
+    def where(self) -> tuple[str, ...]:
+        """Where it lives, in sentences: of another suspect no more need be said."""
+        goes_with = self.goes_with
+        return self.shows if goes_with is None else (*goes_with.sentences(), *self.shows)
 
     @property
     def rms(self) -> float:

@@ -13,6 +13,7 @@ from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
+from sk120stiff.explain.judge.goes_with import Foretold, foretold
 from sk120stiff.explain.judge.nuisance import nuisance_of
 from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.select.beam import beam_search
@@ -22,7 +23,6 @@ from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
 from sk120stiff.measurements import Measurements
 
 TRIED = 6  # sets whose fit may be refused before springs alone have to do
-NOT_FORETOLD = "that is where it shows, but how it goes on there is not known"
 NARROW = 4  # models kept at each size of a search in one part: it is there to choose, not to rank
 
 
@@ -65,8 +65,8 @@ def gap_steps(
     )
 
 
-def foretold_beside(beside: Selection, count: int, without: float, *, seed: int) -> tuple[str, ...]:
-    """What poses left out of the fit say of a suspect; nothing where they do not hold the model.
+def foretold_beside(beside: Selection, count: int, without: float, *, seed: int) -> Foretold | None:
+    """What poses left out of the fit say of a suspect; None where they do not hold the model.
 
     Args:
         beside: Names beside the suspect.
@@ -75,7 +75,7 @@ def foretold_beside(beside: Selection, count: int, without: float, *, seed: int)
         seed: Of the parts in which poses are left out.
     """
     (gap,) = _on_poses_left_out(beside, [count], seed)
-    return _foretold("Poses that are left out are", gap, without)
+    return foretold("Poses that are left out are", gap, without)
 
 
 def foretold_on_file(
@@ -85,8 +85,8 @@ def foretold_on_file(
     effects: Sequence[Effect],
     holdout: Measurements,
     without: float,
-) -> tuple[str, ...]:
-    """What a hold-out file says of a suspect; nothing where that is of these readings' clock.
+) -> Foretold | None:
+    """What a hold-out file says of a suspect; None where that is of these readings' clock.
 
     Its columns are those of both files together: it may be scaled by the largest load of all.
 
@@ -105,21 +105,13 @@ def foretold_on_file(
         both = load_cases_of(base.model.robot, readings + other)
         suspect = suspect_named(name, base.model, both)
         if suspect is None or suspect.family in ("series", "change"):
-            return ()
+            return None
         model = base.model + nuisance_of(suspect, base.model, both)
         with_it = fit(model, readings, noise=noise)
         gap = _on_file(refit(with_it, effects) if effects else with_it, holdout)
     except (InputError, Refusal):  # of other points or joints; or they do not hold the model
-        return ()
-    return _foretold("The readings of the hold-out file are", gap, without)
-
-
-def _foretold(what: str, gap: float, without: float) -> tuple[str, ...]:
-    if not np.isfinite([gap, without]).all():
-        return ()
-    both = f"to {1e6 * gap:.3g} µm rms per axis with it and to {1e6 * without:.3g} without"
-    but = "" if gap < without else f": {NOT_FORETOLD}"
-    return (f"{what} foretold {both}{but}.",)
+        return None
+    return foretold("The readings of the hold-out file are", gap, without)
 
 
 def nested(found: Selection, counts: Sequence[int]) -> Learn:

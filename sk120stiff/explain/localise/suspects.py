@@ -28,6 +28,11 @@ MOST_HALF_WAVES = 40  # of a drift in one series
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
 
 
+def comes_and_goes(name: str) -> bool:
+    """Is a suspect of that name a drift to and fro?"""
+    return TO_AND_FRO in name
+
+
 @dataclass(frozen=True, eq=False)
 class Axes:
     """Three directions that go with the pose.

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from sk120stiff.errors import listed
 from sk120stiff.explain.localise.localisation import LEVEL, Localisation, Suspicion
-from sk120stiff.explain.localise.suspects import CLOCKS, TO_AND_FRO
+from sk120stiff.explain.localise.suspects import CLOCKS, comes_and_goes
 from sk120stiff.identify.checks.lack_of_fit import chance
 
 CLOSE = 6.0  # evidence by which a suspect must lead, or others are named beside it
@@ -244,13 +244,13 @@ def _postures(found: Localisation) -> Iterator[str]:
 def _series(found: Localisation) -> Iterator[str]:
     """Order, time and branch: what a sceptic asks first, so their absence is told too."""
     series = [s for s in (found.beside or found.suspects) if s.family == "series"]
-    wander = any(s.seen and TO_AND_FRO in s.name for s in (*found.suspects[:1], *series))
+    wander = any(s.seen and comes_and_goes(s.name) for s in (*found.suspects[:1], *series))
     clear = [
         s.name
         for s in series
         if not s.seen
         and not s.name.startswith("a constant")
-        and TO_AND_FRO not in s.name
+        and not comes_and_goes(s.name)
         and not (wander and s.name in CLOCKS)
     ]
     if clear:
