@@ -78,6 +78,7 @@ def command(
     angle: Angle | None = None,
     load: Load | None = None,
     forces: Axes | None = None,
+    forces_rpy: str | None = None,
     wrench: str | None = None,
     payload: list[str] | None = None,
     payload_point: str | None = None,
@@ -122,6 +123,8 @@ def command(
         load: Unit of fx,fy,fz or payload (kg: payload alone).
         forces: Axes of fx,fy,fz and mx,my,mz; instrument: those in which the positions stand.
             [default: base]
+        forces_rpy (VALUES): Roll, pitch, yaw of the sensor's axes in those that --forces names:
+            '0,0,45 deg'. [default: not turned]
         wrench (VALUES): What the column load counts, on the robot in base axes: '0,0,-490 N'.
         payload (MASS): What hung on the tool in all rows, where no column says it: '5 kg', '500 g'
             or '10 lb', one mass ('0,5 kg' is 0.5 kg); of several files each by its name, 'a.csv=5
@@ -181,6 +184,9 @@ def command(
             joints=_names(joints),
             coverage=coverage,
             forces=None if forces is None else forces.value,
+            forces_rpy=None
+            if forces_rpy is None
+            else parse_values(forces_rpy, "angle", where="--forces-rpy", like="0,0,45 deg"),
             dates=None if dates is None else dates.value,
         ),
         joints_file=joints_file,

@@ -104,8 +104,9 @@ def turned(angle: float, what: What, frame: Frame) -> Correction:
         "both": "Choose the base frame that they are stated in (base_frame, --base), or turn them "
         "by as much.",
         "d": "Turn the displacement by as much, into axes of the base frame.",
-        "f": f"Turn the force by as much, into axes of the {frame} frame; of a file with positions "
-        "in the same axes, import it with --forces instrument.",
+        "f": f"Write 'force: {{frame: {frame}, rpy: [0, 0, {degrees:g}], rpy_unit: deg}}' into the "
+        "YAML file; of a file with positions in the same axes, import it with --forces "
+        "instrument.",
     }
 
     def mend(sheet: Sheet) -> Sheet:

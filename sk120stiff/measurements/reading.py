@@ -23,6 +23,7 @@ from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.rays import along_rays
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
+from sk120stiff.measurements.sensor_axes import in_the_frame
 from sk120stiff.measurements.subtraction import Displacements, displacements, undisplaced
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.measurements.zero import of_one_reading
@@ -165,7 +166,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         joint_names=tuple(kinds),
         joint_kinds=tuple(kinds.values()),
         joints=rows.joints[kept],
-        wrench=rows.wrench[kept],
+        wrench=in_the_frame(rows.wrench[kept], file),
         point=point,
         force_point=force_point,
         force_frame=settings.force.frame,

@@ -33,10 +33,13 @@ class PointEntry(Strict):
 class ForceEntry(Strict):
     """Axes of the reported wrench, and its point of attack if that is not the measured point.
 
-    Whoever writes about the force says its frame; only without the section it is the base.
+    Whoever writes about the force says its frame; only without the section it is the base. With
+    `rpy` the axes are turned in that frame by roll, pitch and yaw, as a sensor is screwed on.
     """
 
     frame: _Frame
+    rpy: Vector | None = None
+    rpy_unit: str | None = None
     point: PointEntry | None = None
 
 
@@ -145,7 +148,8 @@ class Settings(Strict):
 
 _EXAMPLES = {
     "point": "point: {xyz: [-60.0, 40.0, 150.0], unit: mm}",
-    "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
+    "force": "force: {frame: tool, rpy: [0, 0, 30], rpy_unit: deg, "
+    "point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
     "displacement": "displacement: {frame: base, zero: shared}",
     "position": "position: {frame: unknown}",
     "rotation": "rotation: {axes: target}",

@@ -38,7 +38,13 @@ def pulled(folder: Path, frame: str, sign: float, turn: float, stated: str) -> P
         ("base", -1.0, 0.0, "base", "the other sign, springs.*Negate them"),
         ("tool", 1.0, 0.0, "base", "in axes of the tool, springs.*force: {frame: tool}"),
         ("base", 1.0, 0.0, "tool", "in axes of the base, springs.*force: {frame: base}"),
-        ("tool", 1.0, -45.0, "tool", "turned by -45 deg about z of the tool.*Turn them by -45"),
+        (
+            "tool",
+            1.0,
+            -45.0,
+            "tool",
+            "turned by -45 deg about z of the tool.*rpy: .0, 0, -45.",
+        ),
         ("tool", -1.0, 90.0, "base", "other sign and in axes of the tool and turned by 90 deg"),
     ],
 )
@@ -51,6 +57,17 @@ def test_forces_that_are_meant_otherwise_are_told(
         sk.explain(sk.Model(robot), data)
     with pytest.raises(sk.InputError, match=told):
         sk.fit(sk.base_model(robot), data)
+
+
+def test_a_sensor_whose_turn_is_stated_is_read_in_its_own_axes(tmp_path: Path) -> None:
+    """What the refusal says to write mends the file."""
+    path = pulled(tmp_path, "tool", 1.0, -45.0, "tool, rpy: [0, 0, -45], rpy_unit: deg")
+    data = sk.read(path)
+    found = sk.explain(sk.Model(sk.load_robot(data.robot, base="base", tool="tool")), data)
+    assert isinstance(found, Explained)
+    names = {item.effect.id for item in found.findings}
+    assert {f"joint_springs:j{k}" for k in (2, 3)} <= names
+    assert "force_rotation:sensor" not in names
 
 
 @pytest.mark.parametrize("turn", [0.0, 4.0])

@@ -65,7 +65,7 @@ def test_forces_that_are_turned(arm: str, degrees: float) -> None:
     found = find_slip(known.robot, replace(both, displacement=known.readings.displacement))
     assert found is not None and found.after > 0.98
     assert abs(told(found.said, FORCE) - degrees) < 1.0
-    assert "Turn the force by as much" in found.remedy
+    assert f"rpy: [0, 0, {told(found.said, FORCE):g}], rpy_unit: deg" in found.remedy
 
 
 @pytest.mark.parametrize(("k", "degrees"), [(2, 90), (3, 180), (4, -90)])

@@ -126,10 +126,10 @@ class _Way:
             mend.append("Negate them: the force on the robot is meant, not that of the robot.")
         if self.other:
             said.append(f"in {axes}")
-            mend.append(f"Write 'force: {{frame: {frames[1]}}}' into the YAML file.")
-        if abs(self.angle) >= FAR:
+        turned = abs(self.angle) >= FAR
+        if turned:
             said.append(f"turned by {self.angle:g} deg about z of the {frames[self.other]}")
-            mend.append(
-                f"Turn them by {self.angle:g} deg about z, from the sensor's axes to {axes}."
-            )
+        if self.other or turned:
+            rpy = f", rpy: [0, 0, {self.angle:g}], rpy_unit: deg" if turned else ""
+            mend.append(f"Write 'force: {{frame: {frames[self.other]}{rpy}}}' into the YAML file.")
         return f"taken {' and '.join(said)}", " ".join(mend)

@@ -46,7 +46,8 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
     Raises:
         InputError: Two of the three, a force without its axis beside displacements, moments without
             forces, a component that may stand in a column of another name, a unit that nobody said,
-            a sensor's own axes that nobody told, or a wrench or a payload's place for nothing.
+            a sensor's own axes that nobody told, or told against no frame, or a wrench or a
+            payload's place for nothing.
     """
     where = str(sheet.path)
     there = [
@@ -56,6 +57,13 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
         )
         if any(sheet.get(name) for name in names)
     ]  # fmt: skip
+    if told.forces_rpy is not None and told.forces not in ("base", "tool"):
+        raise InputError(
+            "a sensor's axes are turned against those of the tool or of the base, and nobody said "
+            "against which",
+            where="--forces-rpy",
+            remedy="Give --forces tool (or --forces base) with it.",
+        )
     if len(there) > 1:
         raise InputError(
             f"the load is given twice: {' and '.join(there)}",
@@ -178,6 +186,12 @@ def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
         "instrument": "Forces are taken to act on the robot, in the axes in which positions stand.",
     }
     frame = told.forces or "base"
+    if told.forces_rpy is not None:
+        turn = ", ".join(f"{v:g}" for v in np.degrees(told.forces_rpy))
+        said[frame] = (
+            "Forces are taken to act on the robot, in axes of a sensor that are turned by roll, "
+            f"pitch, yaw {turn} deg in the {frame} frame."
+        )
     zero = f" Of {listed(missing)} there is no column: taken as zero." if missing else ""
     return Loads(W, None, tuple(taken), frame, said[frame] + zero)
 
@@ -196,7 +210,8 @@ def _refuse_a_sensor_without_axes(sheet: Sheet, taken: list[Column]) -> None:
             where=str(read[0].file or sheet.path),
             remedy="Give --forces tool if they are in axes of the tool frame, as a sensor on the "
             "tool reads; --forces base if the controller turned them into those of the base; "
-            "--forces instrument if they are in those in which positions stand.",
+            "--forces instrument if they are in those in which positions stand; --forces tool "
+            "--forces-rpy '0,0,45 deg' of a sensor that is screwed on turned.",
         )
 
 

@@ -118,6 +118,9 @@ def settings_for(
     if mode != "positions" or (not weight and np.any(draft.loads.wrench)):
         frame = draft.loads.frame  # those of the instrument are turned, see `columns_for`
         settings["force"] = {"frame": "base" if frame == "instrument" else frame}
+        if told.forces_rpy is not None:
+            degrees = [float(f"{v:.12g}") for v in np.degrees(told.forces_rpy)]
+            settings["force"] |= {"rpy": degrees, "rpy_unit": "deg"}
         if weight:
             settings["force"]["point"] = hung
         elif mode == "positions" and sensed and told.point is None:

@@ -48,6 +48,7 @@ class Told:
         coverage: What stated uncertainties are multiples of; as their header says by default.
         forces: Axes of ``fx fy fz`` (``mx my mz``): ``"base"``, ``"tool"``, or ``"instrument"``,
             those in which the positions stand; base unless told.
+        forces_rpy: (3,) roll, pitch, yaw of the sensor's axes in those of `forces`, rad.
         dates: Whether the day or the month comes first in dates like 10/09/2026.
     """
 
@@ -63,6 +64,7 @@ class Told:
     coverage: float | None = None
     dates: DateOrder | None = None
     forces: Literal["base", "tool", "instrument"] | None = None
+    forces_rpy: Array | None = None
 
     def of(self, kind: str) -> str | None:
         """The unit that was told for a kind."""

@@ -96,3 +96,14 @@ def test_axes_of_a_sensor_are_asked_for(form: str, tmp_path: Path) -> None:
         tmp_path, text, length="mm", angle="deg", forces="tool", load="N" if "/" in form else None
     ).loads
     assert loads.frame == "tool" and loads.wrench[0, 0] == 1.0
+
+
+def test_a_sensor_that_is_screwed_on_turned_is_written_with_its_turn(tmp_path: Path) -> None:
+    text = MOVED.format("fx[N],fy[N],fz[N]", "1,2,3", "4,5,6")
+    told = {"length": "mm", "angle": "deg", "forces_rpy": np.radians([0.0, 0.0, 45.0])}
+    for of_no_frame in ({}, {"forces": "instrument"}):
+        with pytest.raises(InputError, match="against which"):
+            draft_of(tmp_path, text, **told, **of_no_frame)
+    loads = draft_of(tmp_path, text, forces="tool", **told).loads
+    assert "turned by roll, pitch, yaw 0, 0, 45 deg in the tool frame" in loads.said
+    assert loads.wrench[0, :3].tolist() == [1.0, 2.0, 3.0]  # as read: the YAML file turns them
