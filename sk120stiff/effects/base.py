@@ -204,7 +204,19 @@ class Effect(ABC):
 
 
 class Elastic(Effect):
-    """An effect that lets coordinates yield under load."""
+    """An effect that lets coordinates yield under load.
+
+    Attributes:
+        yields_under: Completes "the moment that ..." (of coordinates that shift: "the force that
+            ..."), ``{where}`` being the place: that load is what a gap may go with. Without it
+            nothing is said of where such a cause lives (class attribute).
+    """
+
+    yields_under: ClassVar[str] = ""
+
+    def free_form(self) -> Elastic:
+        """The same with as many parameters as its kind may have."""
+        return self
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Joints that the effect adds to the chain; none where motors' coordinates yield."""

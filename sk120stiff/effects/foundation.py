@@ -38,6 +38,7 @@ class BaseRocking(StraightPart):
     )
     also: ClassVar[str] = f"with {CROSS}, where the stiff direction lies askew of the axes; {ALSO}"
     one_axis_each: ClassVar[bool] = True
+    yields_under: ClassVar[str] = "tips the base"
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Effect:
@@ -113,6 +114,7 @@ class BaseSliding(LinearElastic):
     says: ClassVar[str] = "The base shifts on its foundation under the load."
     axes: ClassVar[str] = "axes of the base frame"
     one_axis_each: ClassVar[bool] = True
+    yields_under: ClassVar[str] = "pushes the base"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -30,6 +30,7 @@ class JointTilt(StraightPart):
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
     one_axis_each: ClassVar[bool] = True
+    yields_under: ClassVar[str] = "{where} carries across its axis"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -92,6 +92,7 @@ class LinkBending(LinearElastic):
         "EI_in_plane_roll_axis_taper_60"
     )
     inexact: ClassVar[float] = 0.14  # links taper more or less
+    yields_under: ClassVar[str] = "bends {where}"
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
@@ -143,6 +144,10 @@ class LinkBending(LinearElastic):
             )
             for plane in ([f"_{each}" for each in PLANES] if self.planes else [""])
         )
+
+    def free_form(self) -> LinkBending:
+        """Each plane has an EI of its own."""
+        return replace(self, planes=True)
 
     def other_laws(self, load_cases: LoadCases) -> tuple[LinkBending, ...]:
         """Other tapers, a beam along the roll axis where there is one, planes that differ."""
@@ -215,6 +220,7 @@ class LinkTorsion(LinearElastic):
         "the line of the link, or the next joint's axis where the link is its shaft"
     )
     one_axis_each: ClassVar[bool] = True
+    yields_under: ClassVar[str] = "twists {where}"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

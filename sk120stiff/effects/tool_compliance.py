@@ -27,6 +27,7 @@ class ToolCompliance(StraightPart):
     says: ClassVar[str] = "The fixture at {where} yields between flange and measured point."
     axes: ClassVar[str] = "axes of the tool frame, at its origin"
     one_axis_each: ClassVar[bool] = True
+    yields_under: ClassVar[str] = "the tool carries"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

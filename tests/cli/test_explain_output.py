@@ -107,7 +107,7 @@ def test_an_answer_saves_itself_as_the_command_writes_it(answer, task, tmp_path)
 
 def test_no_sentence_is_said_twice_on_the_terminal(answer, tmp_path) -> None:
     """Where nothing is named, what is left lives where the gap of the base model does."""
-    left = replace(answer.remainder, where=answer.where[1:2])
+    left = replace(answer.remainder, shows=answer.where[1:2])
     assert left.where
     told = parts(replace(answer, verdict="outside", remainder=left), tmp_path)
     sentences = [part for part in told if isinstance(part, str)]

@@ -202,7 +202,7 @@ def test_what_bends_behind_the_last_joint_is_looked_for_as_the_tool(springs):
     every = suspects_of(springs, load_cases, springs.predict(load_cases))
     behind = [each for each in every if "link_6_t" in each.name]
     assert behind
-    assert all("tool_compliance" in each.frees for each in behind)  # none speaks against it
+    assert all(tool in each.frees for each in behind)  # none speaks against it
 
 
 def test_a_beam_that_ends_before_the_last_joint_is_its_own_name_wherever_the_tool_is():

@@ -19,14 +19,14 @@ from sk120stiff.explain.answer.words import (
 )
 from sk120stiff.explain.findings import Apart, Contender, Step
 from sk120stiff.explain.judge.adequacy import Adequacy
-from sk120stiff.explain.judge.steps import NOT_FORETOLD
+from sk120stiff.explain.judge.goes_with import Foretold, GoesWith
 from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.identify import LackOfFit
 from sk120stiff.model import Share
 
 PLACE = "the force that link_3 carries"
-ACCOUNT = f"It goes with {PLACE}: with that beside the names, nothing is left beyond the noise."
-CLOSE = f"It goes most closely with {PLACE}: that takes away 93 % of what exceeds the noise."
+ALL = GoesWith(PLACE, 0.0, 2e-5, beside_names=True)
+MOST = GoesWith(PLACE, 3e-6, 2e-5, beside_names=True)
 BEYOND = LackOfFit("stated", 681.0, (292, None), 1e-30, 1.53)
 
 
@@ -38,7 +38,8 @@ def adequacy(understated: float | None = None) -> Adequacy:
 class Answered:
     """What `next_step` and the sentences ask of an answer."""
 
-    where: tuple[str, ...] = (ACCOUNT,)
+    goes_with: GoesWith | None = ALL
+    closest: str | None = None
     understated: float | None = None
     verdict: str = "named"
     significant: bool = True
@@ -58,7 +59,9 @@ class Answered:
 
     @property
     def remainder(self) -> Any:
-        return SimpleNamespace(where=self.where, significant=self.significant, rms=2e-5)
+        return SimpleNamespace(
+            goes_with=self.goes_with, closest=self.closest, significant=self.significant, rms=2e-5
+        )
 
     @property
     def noise_reasons(self) -> tuple[str, ...]:
@@ -76,7 +79,7 @@ class Answered:
 
 
 def test_what_has_a_place_is_not_called_noise() -> None:
-    known, unknown = Answered(), Answered(where=(CLOSE,))
+    known, unknown = Answered(), Answered(goes_with=None, closest=PLACE)
     assert accounted(known) == PLACE and accounted(unknown) is None
     first, second = noise_words(known)
     assert first == "Rows share a zero."
@@ -88,20 +91,21 @@ def test_what_has_a_place_is_not_called_noise() -> None:
 def test_what_to_do_now_sends_to_the_place_where_one_is_known() -> None:
     assert f"The rest goes with {PLACE}" in next_step(Answered())
     assert "repeat a few readings" not in next_step(Answered())
-    assert "repeat a few readings" in next_step(Answered(where=(CLOSE,)))
+    assert "repeat a few readings" in next_step(Answered(goes_with=None, closest=PLACE))
 
 
 def test_nobody_is_sent_to_mend_what_other_poses_do_not_show() -> None:
-    told = Answered()
-    worse = replace(told, where=(*told.where, f"Poses are foretold worse with it: {NOT_FORETOLD}."))
-    said = next_step(worse)
+    worse, better = (
+        replace(ALL, foretold=Foretold("Poses are", gap, without=1e-5)) for gap in (1.1e-5, 9e-6)
+    )
+    assert f"The rest goes with {PLACE}" in next_step(Answered(goes_with=better))
+    said = next_step(Answered(goes_with=worse))
     assert f"The rest shows most with {PLACE}, but poses left out are foretold no better" in said
     assert "look there" not in said
 
 
 def test_where_most_of_it_goes_with_one_place_it_is_sent_there_too() -> None:
-    most = f"Most of it goes with {PLACE}: with that beside the names, 3 µm rms per axis are left."
-    told = Answered(where=(most,))
+    told = Answered(goes_with=MOST)
     assert mostly_accounted(told) == PLACE and accounted(told) is None
     assert mostly_accounted(Answered()) is None
     assert f"Most of the rest goes with {PLACE}: look there first" in next_step(told)

@@ -18,6 +18,7 @@ from sk120stiff.errors import two_digits
 from sk120stiff.explain.localise.changes import changes
 from sk120stiff.explain.localise.drives import angles, drives, laws, waves
 from sk120stiff.explain.localise.suspect import Suspect
+from sk120stiff.explain.localise.yielding import yielding
 from sk120stiff.model import Model
 from sk120stiff.robot.anatomy import ArmJoint, arm_joints, last_link
 
@@ -25,6 +26,8 @@ CLOCKS = ("the order of the readings", "the time since the zero reading")
 TO_AND_FRO = ", coming and going in "
 WAVE = 4  # readings, at least, in half a wave of a drift
 MOST_HALF_WAVES = 40  # of a drift in one series
+TIPS, TURNS = "the moment that tips the base", "the moment that the tool carries"
+ENDS = (TIPS, "the force that pushes the base", TURNS, "the force that the tool carries")
 SHARE_OF_LONGEST = 0.3  # a link shorter than this share of the longest does not count as an arm
 
 
@@ -84,19 +87,24 @@ def suspects_of(model: Model, load_cases: LoadCases, predicted: Array) -> tuple[
         load_cases: Its N readings.
         predicted: (N, 3) what it predicts, base axes [m].
     """
+    places = yielding(load_cases)
+    ends = {each.name: each for each in places if each.name in ENDS}
     return (
-        *_places(load_cases),
+        *places,
+        *_places_without_a_name(load_cases, ends.get(TIPS)),
+        *drives(load_cases),
         *laws(load_cases),
-        *_bent_places(load_cases),
+        *map(_bent, ends.values()),
         *angles(model, load_cases),
         *waves(load_cases),
         *_loads_in_axes(load_cases),
         *_instruments(model, load_cases, predicted),
         *_series(load_cases),
         *changes(
-            load_cases, (_tipping(load_cases), _turning_tool(load_cases)), [*drives(load_cases)]
+            load_cases, [ends[name] for name in (TIPS, TURNS) if name in ends],
+            [*drives(load_cases)],
         ),
-    )
+    )  # fmt: skip
 
 
 def suspect_named(name: str | None, model: Model, load_cases: LoadCases) -> Suspect | None:
@@ -105,56 +113,24 @@ def suspect_named(name: str | None, model: Model, load_cases: LoadCases) -> Susp
     return next((each for each in every if each.name == name), None)
 
 
-def _places(load_cases: LoadCases) -> Iterator[Suspect]:
-    """The arm yields somewhere from base to tool, under the moment or force it carries there."""
+def _places_without_a_name(load_cases: LoadCases, tips: Suspect | None) -> Iterator[Suspect]:
+    """Where the arm may yield as no effect has it.
+
+    Args:
+        load_cases: The N readings.
+        tips: The base that tips, if any moment tips it.
+    """
     robot, count = load_cases.robot, load_cases.count
+    if tips is not None:
+        yield _floor(tips)
     base = np.broadcast_to(robot.foundation, (count, 3))
-    world = np.broadcast_to(np.eye(3), (count, 3, 3))
-    tips = _tipping(load_cases)
-    yield replace(tips, frees=("base_rocking",))
-    yield _floor(tips)
-    name = "the moment that turns the base about z"
-    yield _turning("place", name, load_cases, base, world[..., 2:])
-    pushes = _pushing("place", "the force that pushes the base", load_cases, world)
-    yield replace(pushes, frees=("base_sliding",))
-    screws = load_cases.nominal
-    yield from drives(load_cases)
+    up = np.broadcast_to(np.eye(3)[:, 2:], (count, 3, 1))
+    yield _turning("the moment that turns the base about z", load_cases, base, up)
     for joint in arm_joints(robot):
-        behind = ("tool_compliance",) if joint.link == last_link(robot) else ()
-        at = screws.origins[:, joint.index]
+        behind = (f"tool_compliance:{robot.tool_frame}",) if joint.link == last_link(robot) else ()
         frames = _frames(load_cases, joint)
-        across = _rotation(load_cases, joint) @ np.stack(joint.tilt_axes(), axis=-1)
-        name = f"the moment that {joint.name} carries across its axis"
-        tilts = _turning("place", name, load_cases, at, across)
-        yield replace(tilts, frees=(f"joint_tilt:{joint.name}",))
-        if joint.length > 0.1 * max(j.length for j in arm_joints(robot)):
-            middle = at + 0.5 * joint.length * frames[..., 0]
-            name = f"the moment that bends {joint.link} halfway"
-            bends = _turning("place", name, load_cases, middle, frames[..., 1:])
-            yield replace(bends, frees=(f"link_bending:{joint.link}", *behind))
-            name = f"the moment that twists {joint.link}"
-            twists = _turning("place", name, load_cases, at, frames[..., :1])
-            yield replace(twists, frees=(f"link_torsion:{joint.link}", *behind))
-        pulled = _pushing("place", f"the force that {joint.link} carries", load_cases, frames)
+        pulled = _pushing(f"the force that {joint.link} carries", load_cases, frames)
         yield replace(pulled, frees=behind)
-    at_tool = (
-        _turning_tool(load_cases),
-        _pushing("place", "the force that the tool carries", load_cases, load_cases.rotation),
-    )
-    yield from (replace(each, frees=("tool_compliance",)) for each in at_tool)
-
-
-def _tipping(load_cases: LoadCases) -> Suspect:
-    """The base tips about x and y."""
-    base = np.broadcast_to(load_cases.robot.foundation, (load_cases.count, 3))
-    world = np.broadcast_to(np.eye(3), (load_cases.count, 3, 3))
-    return _turning("place", "the moment that tips the base", load_cases, base, world[..., :2])
-
-
-def _turning_tool(load_cases: LoadCases) -> Suspect:
-    """The tool turns on what it is held by."""
-    tip, rotation = load_cases.nominal.frame_position, load_cases.rotation
-    return _turning("place", "the moment that the tool carries", load_cases, tip, rotation)
 
 
 def _floor(tips: Suspect) -> Suspect:
@@ -166,31 +142,18 @@ def _floor(tips: Suspect) -> Suspect:
     shifts = np.swapaxes(np.cross(moment[:, None, :], np.eye(3)), 1, 2)
     columns = np.concatenate([tips.columns.sum(axis=2, keepdims=True), shifts], axis=2)
     name = "the moment that tips the floor under base and tracker"
-    return replace(tips, name=name, columns=columns, carried=np.zeros((0, 0)))
+    return replace(tips, name=name, columns=columns, carried=np.zeros((0, 0)), frees=())
 
 
-def _bent_places(load_cases: LoadCases) -> Iterator[Suspect]:
+def _bent(straight: Suspect) -> Suspect:
     """Base and tool yield, but not in proportion: more and more, less and less, or one way only."""
-    base = np.broadcast_to(load_cases.robot.foundation, (load_cases.count, 3))
-    world = np.broadcast_to(np.eye(3), (load_cases.count, 3, 3))
-    rotation, tip = load_cases.rotation, load_cases.nominal.frame_position
-    tips = _turning("law", "the moment that tips the base", load_cases, base, world[..., :2])
-    pushes = _pushing("law", "the force that pushes the base", load_cases, world)
-    turns = _turning("law", "the moment that the tool carries", load_cases, tip, rotation)
-    shifts = _pushing("law", "the force that the tool carries", load_cases, rotation)
-    for straight, frees in (
-        (tips, "base_rocking"),
-        (pushes, "base_sliding"),
-        (turns, "tool_compliance"),
-        (shifts, "tool_compliance"),
-    ):
-        load = straight.carried
-        largest = np.maximum(np.abs(load).max(axis=0), 1e-300)
-        sign = np.sign(load)[:, None, :]
-        curved = straight.columns * (np.abs(load) / largest)[:, None, :]
-        columns = np.concatenate([straight.columns * sign, curved], axis=2)
-        name = f"{straight.name}, not in proportion to it"
-        yield replace(straight, name=name, columns=columns, frees=(frees,))
+    load = straight.carried
+    largest = np.maximum(np.abs(load).max(axis=0), 1e-300)
+    sign = np.sign(load)[:, None, :]
+    curved = straight.columns * (np.abs(load) / largest)[:, None, :]
+    columns = np.concatenate([straight.columns * sign, curved], axis=2)
+    name = f"{straight.name}, not in proportion to it"
+    return replace(straight, family="law", name=name, columns=columns)
 
 
 def _loads_in_axes(load_cases: LoadCases) -> Iterator[Suspect]:
@@ -280,7 +243,7 @@ def _comings_and_goings(load_cases: LoadCases) -> Iterator[Suspect]:
         yield Suspect("series", name, columns, zero + since, label, alike=most)
 
 
-def _turning(family: str, name: str, at: LoadCases, origin: Array, about: Array) -> Suspect:
+def _turning(name: str, at: LoadCases, origin: Array, about: Array) -> Suspect:
     """A turn about the directions `about` (N, 3, k) through `origin`, under the moment there."""
     screws = at.nominal
     pull = screws.at(at.force_point).position
@@ -288,16 +251,14 @@ def _turning(family: str, name: str, at: LoadCases, origin: Array, about: Array)
     lever = screws.position - origin
     carried = np.einsum("nik,ni->nk", about, moment)
     columns = np.cross(about, lever[:, :, None], axis=1) * carried[:, None, :]
-    size = np.linalg.norm(carried, axis=1)
-    return Suspect(family, name, columns, size, "moment there [N·m]", carried=carried)
+    return Suspect("place", name, columns, np.linalg.norm(carried, axis=1), "moment there [N·m]")
 
 
-def _pushing(family: str, name: str, at: LoadCases, along: Array) -> Suspect:
+def _pushing(name: str, at: LoadCases, along: Array) -> Suspect:
     """A shift along the directions `along` (N, 3, k) under the force."""
     carried = np.einsum("nik,ni->nk", along, at.wrench[:, :3])
     columns = along * carried[:, None, :]
-    size = np.linalg.norm(carried, axis=1)
-    return Suspect(family, name, columns, size, "force there [N]", carried=carried)
+    return Suspect("place", name, columns, np.linalg.norm(carried, axis=1), "force there [N]")
 
 
 def _rotation(load_cases: LoadCases, joint: ArmJoint) -> Array:

@@ -1,0 +1,83 @@
+"""Places that may yield: the elastic effects of the catalogue, every parameter a free factor.
+
+A suspect says where an arm yields, whether or not the effect that does so is among the candidates:
+what the user excluded, or what fell, still shows where it lives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Mask
+from sk120stiff.effects import CATALOGUE, Catalogue, Elastic, LoadCases
+from sk120stiff.effects.options import Options
+from sk120stiff.explain.localise.suspect import Suspect
+from sk120stiff.model.assembly import Assembly
+from sk120stiff.robot import Robot
+
+KEPT = 4  # sets of readings whose suspects are asked for again and again
+
+
+@lru_cache(maxsize=KEPT)
+def yielding(load_cases: LoadCases, catalogue: Catalogue = CATALOGUE) -> tuple[Suspect, ...]:
+    """What each elastic effect does at each place, turns and shifts apart, about the rigid arm.
+
+    Args:
+        load_cases: The N readings.
+        catalogue: Of its effects those that say under what they yield.
+    """
+    return tuple(_yielding(load_cases, catalogue))
+
+
+def _yielding(load_cases: LoadCases, catalogue: Catalogue) -> Iterator[Suspect]:
+    robot = load_cases.robot
+    assembly = Assembly(robot, _free_forms(robot, catalogue))
+    z = np.zeros((load_cases.count, assembly.mechanism.n))
+    z[:, : robot.n] = load_cases.a
+    J = assembly.mechanism.screws(z, load_cases.point).linear_jacobian  # (N, 3, n)
+    torque = assembly.mechanism.screws(z, load_cases.force_point).torques(load_cases.wrench)
+    for effect, part, index in assembly.elastic:
+        moves = effect.by_parameter(torque[:, index], load_cases, np.zeros(part.stop - part.start))
+        turns = np.array([joint.revolute for joint in effect.virtual_joints(robot)])
+        for what, own in (("moment", turns), ("force", ~turns)):
+            if moves[:, own].any():
+                name = f"the {what} that {effect.yields_under.format(where=effect.where)}"
+                yield _suspect(
+                    name, effect, robot, J[:, :, index[own]], torque[:, index[own]], moves[:, own]
+                )
+
+
+def _free_forms(robot: Robot, catalogue: Catalogue) -> tuple[Elastic, ...]:
+    """The effects at all their places, with as many parameters as their kind may have."""
+    return tuple(
+        effect.free_form()
+        for kind in catalogue
+        if issubclass(kind, Elastic) and kind.yields_under
+        for where in kind.places(robot)
+        if isinstance(effect := kind.at(robot, where, Options()), Elastic)
+    )
+
+
+def _suspect(
+    name: str, effect: Elastic, robot: Robot, J: Array, torque: Array, moves: Array
+) -> Suspect:
+    """One of an effect's coordinates that turn, or of those that shift.
+
+    Args:
+        name: Completes the sentence "The gap goes with ...".
+        effect, robot: Whose it is.
+        J: (N, 3, k) shift of the point by these coordinates.
+        torque: (N, k) load on them [N·m or N].
+        moves: (N, k, P) what they do per unit of each parameter.
+    """
+    used: Mask = np.any(moves, axis=(0, 1))
+    columns = J @ moves[:, :, used]
+    load = torque if torque.shape[1] == used.sum() else np.zeros((0, 0))
+    unit = "moment there [N·m]" if name.startswith("the moment") else "force there [N]"
+    size = np.linalg.norm(torque, axis=1) / np.sqrt(torque.shape[1] / max(used.sum(), 1))
+    general = effect.special_case_of(robot)
+    frees = (effect.id, *([] if general is None else [general]))
+    return Suspect("place", name, columns, size, unit, carried=load, frees=frees)
