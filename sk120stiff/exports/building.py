@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from sk120stiff.exports.contract import Request, Told
 from sk120stiff.exports.geometry import IN_MASSES, MEASURED, Geometry, geometry_of, weighing
 from sk120stiff.exports.moving import RIGID, SERVO, Body, Joint, MovingArm, Tied
 from sk120stiff.model import Model, ModelCompliance, model_compliance, probing_poses
-from sk120stiff.robot import LinearCoupling
+from sk120stiff.robot import Chain, LinearCoupling
 from sk120stiff.robot.rotations import homogeneous, joint_motion
 from sk120stiff.robot.visuals import visuals
 from sk120stiff.stiffness.elastic import are_springs, stiffness_of
@@ -153,7 +154,8 @@ class _Builder:
         inertias = iter(robot.tree.inertias(robot.base_frame, robot.tool_frame))
         virtual = {joint.name: joint for joint in self.mechanism.virtual}
         at, pending, since, link = 0, np.eye(4), np.eye(4), ""
-        inertia = np.zeros((3, 3))
+        whole = inertia = np.zeros((3, 3))
+        pieces = _pieces(chain, virtual)
         for e, name in enumerate(chain.names):
             pending = pending @ chain.placements[e]
             since = since @ chain.placements[e]
@@ -166,18 +168,20 @@ class _Builder:
                 else:
                     pending = pending @ joint_motion(axis, turns, shift[z])
                 joint = virtual[name]
+                turn = joint.placement[:3, :3]
+                inertia = turn.T @ whole @ turn
                 if link and not joint.placement[:3, 3].any():  # as `Chain` has it
-                    turn = joint.placement[:3, :3]
-                    inertia = turn.T @ inertia @ turn
                     self.places[link] = (at, pending @ np.linalg.inv(since))
             else:
-                link, since, inertia = robot.document.by_name[name].child, np.eye(4), next(inertias)
+                link, since, whole = robot.document.by_name[name].child, np.eye(4), next(inertias)
+                inertia = whole
                 pending = pending @ joint_motion(axis, turns, self.zeros[name])
                 at, pending = self._real(name, at, pending, axis, turns)
                 self.places[link] = (at, pending)
             if chain.masses[e] > 0.0:
                 mass = self.heavier * float(chain.masses[e])
-                self._weigh(at, pending, mass, chain.centres[e], self.heavier * inertia)
+                own = self.heavier * pieces[e] * inertia
+                self._weigh(at, pending, mass, chain.centres[e], own)
         tip = pending @ chain.placements[-1]
         last = robot.tree.body(robot.tool_frame)
         if robot.tool_frame not in self.places and last[0] >= 0:
@@ -294,6 +298,19 @@ class _Builder:
                         Tied({names[i]: w for i, w in zip(block, weights, strict=True)}, value)
                     )
         return tuple(tied)
+
+
+def _pieces(chain: Chain, virtual: Collection[str]) -> Array:
+    """(m,) inertia of what each joint carries over that of its whole link, of which beams are cut.
+
+    As of a rod: one of n equal pieces has 1/n³ of it. What they have more about the whole link's
+    centre lies in where they are.
+    """
+    body = np.cumsum([name not in virtual for name in chain.names])
+    masses = np.bincount(body, chain.masses)[body]
+    count = np.bincount(body, chain.masses > 0.0)[body]
+    share = np.divide(chain.masses, masses, out=np.zeros(chain.m), where=masses > 0.0)
+    return np.asarray(share / np.maximum(count, 1) ** 2)
 
 
 def _modes(K: Array) -> tuple[list[float], list[list[float]]]:

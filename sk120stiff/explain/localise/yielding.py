@@ -7,7 +7,7 @@ what the user excluded, or what fell, still shows where it lives.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,10 +18,10 @@ from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.robot import Robot
 
-KEPT = 4  # sets of readings whose suspects are asked for again and again
+# Every look at a gap asks anew; what is known goes with the readings.
+_ASKED: WeakKeyDictionary[LoadCases, dict[Catalogue, tuple[Suspect, ...]]] = WeakKeyDictionary()
 
 
-@lru_cache(maxsize=KEPT)
 def yielding(load_cases: LoadCases, catalogue: Catalogue = CATALOGUE) -> tuple[Suspect, ...]:
     """What each elastic effect does at each place, turns and shifts apart, about the rigid arm.
 
@@ -29,7 +29,10 @@ def yielding(load_cases: LoadCases, catalogue: Catalogue = CATALOGUE) -> tuple[S
         load_cases: The N readings.
         catalogue: Of its effects those that say under what they yield.
     """
-    return tuple(_yielding(load_cases, catalogue))
+    known = _ASKED.setdefault(load_cases, {})
+    if catalogue not in known:
+        known[catalogue] = tuple(_yielding(load_cases, catalogue))
+    return known[catalogue]
 
 
 def _yielding(load_cases: LoadCases, catalogue: Catalogue) -> Iterator[Suspect]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -87,10 +88,12 @@ class Chain:
         return bool(self.masses.any())
 
     def with_virtual_joints(self, virtual: Sequence[VirtualJoint], first_index: int) -> Chain:
-        """The same chain with `virtual` joints inserted, in the given order on each body.
+        """The same chain with `virtual` joints inserted, from the near end of each body to the far.
+
+        Each carries what of its body's mass lies beyond it (`_beyond`).
 
         Args:
-            virtual: Joints to insert; several on one body act one after the other as listed.
+            virtual: Joints to insert; several at one place act one after the other as listed.
             first_index: Index of the first virtual joint's value in the joint vector.
         """
         names: list[str] = []
@@ -101,30 +104,33 @@ class Chain:
         masses: list[float] = []
         centres: list[Array] = []
         for body in range(-1, self.m):
+            own = [k for k, joint in enumerate(virtual) if joint.body == body]
+            share = np.array([self._along(body, virtual[k].placement[:3, 3]) for k in own])
+            order = [int(k) for k in np.argsort(share, kind="stable")]
             if body >= 0:
                 names.append(self.names[body])
                 axes.append(self.axes[body])
                 revolute.append(bool(self.revolute[body]))
                 coordinates.append(int(self.coordinates[body]))
-                masses.append(float(self.masses[body]))
-                centres.append(self.centres[body])
+                parts = self._cut(body, share[order])
+                masses += [mass for mass, _ in parts]
+                centres.append(parts[0][1])
             back: Array = np.eye(4)
-            for k, joint in enumerate(virtual):
-                if joint.body != body:
-                    continue
+            for place, at in enumerate(order):
+                k, joint = own[at], virtual[own[at]]
                 placements.append(back @ joint.placement)
                 back = np.asarray(np.linalg.inv(joint.placement), dtype=float)
                 names.append(joint.name)
                 axes.append(joint.axis)
                 revolute.append(joint.revolute)
                 coordinates.append(first_index + k)
-                # A joint at the body's own origin carries the body; one further out does not.
-                takes = bool(masses) and not joint.placement[:3, 3].any() and body >= 0
-                masses.append(masses[-1] if takes else 0.0)
-                turn = joint.placement[:3, :3]
-                centres.append(turn.T @ self.centres[body] if takes else np.zeros(3))
-                if takes:
-                    masses[-2] = 0.0
+                if body < 0:
+                    masses.append(0.0)
+                    centres.append(np.zeros(3))
+                else:
+                    mass, centre = parts[place + 1]
+                    turn, origin = joint.placement[:3, :3], joint.placement[:3, 3]
+                    centres.append(turn.T @ (centre - origin) if mass else np.zeros(3))
             placements.append(back @ self.placements[body + 1])
         return Chain(
             tuple(names),
@@ -135,6 +141,49 @@ class Chain:
             np.array(masses),
             np.array(centres).reshape(-1, 3),
         )
+
+    def _along(self, body: int, at: Array) -> float:
+        """Where on the way to the next joint a point of a body lies: 0 at its joint, 1 there."""
+        span = self.placements[body + 1, :3, 3]
+        length = float(span @ span)
+        return float(at @ span) / length if length and at.any() else 0.0
+
+    def _cut(self, body: int, share: Array) -> list[tuple[float, Array]]:
+        """Mass [kg] and centre (3,) [m, body axes] up to the first cut, then beyond each of them.
+
+        Args:
+            body: The body.
+            share: (k,) where it is cut, as of `_along`, ascending.
+        """
+        left = [(float(self.masses[body]), self.masses[body] * self.centres[body])]
+        left += [self._beyond(body, float(at)) for at in share]
+        left.append((0.0, np.zeros(3)))
+        parts = []
+        for (mass, moment), (rest, further) in pairwise(left):
+            own = mass - rest
+            parts.append((own, (moment - further) / own if own else np.zeros(3)))
+        return parts
+
+    def _beyond(self, body: int, share: float) -> tuple[float, Array]:
+        """Mass [kg] and its moment (3,) [kg·m] beyond a cut through a body.
+
+        Nobody states how a link's mass is spread, only where its centre is. It is taken to lie
+        along the way to the next joint, evenly over as much of it as has its middle at the centre:
+        a beam whose centre is halfway weighs the same everywhere.
+        """
+        mass, centre = float(self.masses[body]), self.centres[body]
+        middle = self._along(body, centre)
+        if share <= 0.0 or middle >= 1.0:  # all that is not mounted at the next joint
+            return (mass, mass * centre) if share < 1.0 else (0.0, np.zeros(3))
+        if middle <= 0.0:  # it weighs behind the joint
+            return 0.0, np.zeros(3)
+        first, last = max(0.0, 2.0 * middle - 1.0), min(1.0, 2.0 * middle)
+        begin = max(share, first)
+        if begin >= last:
+            return 0.0, np.zeros(3)
+        part = mass * (last - begin) / (last - first)
+        span = self.placements[body + 1, :3, 3]
+        return part, part * (centre + (0.5 * (begin + last) - middle) * span)
 
     @cached_property
     def _folded(self) -> dict[bytes, tuple[_Stretch, ...]]:
