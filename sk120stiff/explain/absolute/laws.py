@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
+from scipy.special import expit
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, LoadCases
@@ -31,6 +33,8 @@ from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.written import with_values
 from sk120stiff.model import Parameter
 
+HALF_A_STEP = 12.0**-0.5  # standard deviation of what is anywhere from half a step down to one up
+
 Block = tuple[Effect, Array, Array]  # a law, usual sizes (p,) and columns (M, p) of its parameters
 Laws = dict[int, list[Block]]  # of a candidate, the usual one first
 
@@ -50,6 +54,8 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
         own = linear.candidates[e]
         usual = type(own).at(model.robot, own.where, told)
         others = usual.other_laws(problem.load_cases)
+        near = [law.nearby_laws(problem.load_cases) for law in (usual, *others)]
+        others = (*others, *chain.from_iterable(near))
         if others:
             # a law may stand that other rows made usual: a wild one was the heaviest
             laws[e] = tuple(dict.fromkeys((usual, *others, own)))
@@ -98,14 +104,21 @@ def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
 def beside_laws(
     final: Calibration, linear: Linear, chosen: tuple[int, ...], laws: Laws
 ) -> Calibration:
-    """The calibration, its errors widened by laws and names that the positions do not refute."""
+    """The calibration, its errors widened by laws and names that the positions do not refute.
+
+    Between two laws that are tried lie others: a taper may be anywhere from the middle towards one
+    to the middle towards the next.
+    """
     noise, load_cases = linear.noise(chosen), final.problem.load_cases
     here = _at_rest(linear, chosen, noise, load_cases)
     doubt = dict.fromkeys(here, 0.0)
-    for other in _others(linear, chosen, laws, noise):
+    for other, share in (
+        *((other, 1.0) for other in _others(linear, chosen, laws, noise, load_cases)),
+        *_next_to(linear, chosen, laws, noise, load_cases),
+    ):
         there = _at_rest(*other, noise, load_cases)
         for name in doubt.keys() & there.keys():
-            doubt[name] = max(doubt[name], abs(there[name] - here[name]))
+            doubt[name] = max(doubt[name], share * abs(there[name] - here[name]))
     more = [
         0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.quantity, 0.0)
         for p in final.parameters
@@ -131,15 +144,41 @@ def _at_rest(
     return {parameter.quantity: values[parameter.name] for parameter in named}
 
 
+def _next_to(
+    linear: Linear, chosen: tuple[int, ...], laws: Laws, noise: float, load_cases: LoadCases
+) -> Iterator[tuple[tuple[Linear, tuple[int, ...]], float]]:
+    """The same by laws next to those that stand, and the standard deviation of what lies between.
+
+    It is in steps: that of as much as half a step either way, or more where the next law is nearly
+    as likely.
+    """
+    small, whole = linear.only(chosen), tuple(range(len(chosen)))
+    standing = small.solved(whole, noise).square
+    for e, own in laws.items():
+        for law in own:
+            if _adjacent(linear.candidates[e], law[0], load_cases):
+                other = small.by_law(chosen.index(e), *law)
+                worse = max(other.solved(whole, noise).square - standing, 0.0) / noise
+                yield (other, whole), max(HALF_A_STEP, float(np.sqrt(expit(-0.5 * worse))))
+
+
+def _adjacent(one: Effect, other: Effect, load_cases: LoadCases) -> bool:
+    return other in one.nearby_laws(load_cases) or one in other.nearby_laws(load_cases)
+
+
 def _others(
-    linear: Linear, chosen: tuple[int, ...], laws: Laws, noise: float
+    linear: Linear, chosen: tuple[int, ...], laws: Laws, noise: float, load_cases: LoadCases
 ) -> Iterator[tuple[Linear, tuple[int, ...]]]:
     """The same by other laws, the likeliest of those not refuted, and by other names."""
     small, whole = linear.only(chosen), tuple(range(len(chosen)))
     most = small.solved(whole, noise).square + REFUTED * noise
     for e, own in laws.items():
-        k = chosen.index(e)
-        tried = [small.by_law(k, *law) for law in own if law[0] != linear.candidates[e]]
+        k, now = chosen.index(e), linear.candidates[e]
+        tried = [
+            small.by_law(k, *law)
+            for law in own
+            if law[0] != now and not _adjacent(now, law[0], load_cases)
+        ]
         near = sorted(tried, key=lambda each: each.solved(whole, noise).square)[:LAWS]
         yield from ((each, whole) for each in near if each.solved(whole, noise).square < most)
     for e in chosen:
