@@ -42,6 +42,7 @@ from sk120stiff.effects.link_masses import LinkMasses
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.payload import Payload
+from sk120stiff.effects.payload_mass import PayloadMass
 from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.effects.reading_drift import ReadingDrift
 from sk120stiff.effects.target_rotation import TargetRotation
@@ -88,6 +89,7 @@ OWN: tuple[type[Effect], ...] = (
     TransmissionError,
     JointCoupling,
     Payload,
+    PayloadMass,
     LinkMasses,
     ApproachSide,
     MarkerShift,

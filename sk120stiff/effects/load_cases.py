@@ -47,6 +47,7 @@ class LoadCases:
         pose: (N,) index into `poses`.
         poses: Labels of the poses.
         absolute: Readings say where the point stands, not how far it went under a load.
+        payload: (N,) mass that hangs on the tool as stated [kg], or None.
         payload_point: (3,) where a payload hangs, in the tool frame [m]; None where there is none.
         temperature: (N,) temperature over its mean [K], or None.
         series, series_names: (N,) series that each reading belongs to, and their labels.
@@ -70,6 +71,7 @@ class LoadCases:
     pose: Index
     poses: tuple[str, ...]
     absolute: bool = False
+    payload: Array | None = None
     payload_point: Array | None = None
     temperature: Array | None = None
     series: Index | None = None
@@ -208,6 +210,7 @@ class LoadCases:
             branch=self.branch[pick],
             pose=self.pose[pick],
             point=self.point if self.point.ndim == 1 else self.point[pick],
+            payload=part(self.payload),
             temperature=part(self.temperature),
             series=part(self.series),
             station=part(self.station),
@@ -340,6 +343,7 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
         order_at_zero=None,
         time_at_zero=None,
         absolute=True,
+        payload=said.payload,
         payload_point=said.payload_point,
         temperature=None if temperature is None else temperature - temperature.mean(),
         series=None if labels is None else np.array([names.index(label) for label in labels]),

@@ -18,6 +18,7 @@ class Options:
         thermal: The experiment has temperatures, for `thermal_growth`.
         rotations: Rotations of the tool were read, for `target_rotation`.
         hung: The loads are masses on the tool, for `force_point`.
+        masses: Payloads of the experiment that differ [kg], for `payload_mass`.
         shape: Names of the parameters of the law that is meant, for effects that know more than
             one.
     """
@@ -30,4 +31,5 @@ class Options:
     thermal: bool = False
     rotations: bool = False
     hung: bool = False
+    masses: tuple[float, ...] = ()
     shape: tuple[str, ...] = ()

@@ -34,7 +34,9 @@ def test_every_parameter_of_every_effect_has_a_meaning() -> None:
 def test_the_names_of_every_other_law_are_told(kind) -> None:
     found = readings(robot := load_robot("motoman_sk120"), 6, seed=2)
     found = replace(found, time_at_zero=np.arange(6.0))
-    usual = kind.at(robot, [*kind.places(robot), robot.base_frame][0], Options(timed=True))
+    usual = kind.at(
+        robot, [*kind.places(robot), robot.base_frame][0], Options(timed=True, masses=(40.0, 80.0))
+    )
     laws = usual.other_laws(found)
     own = " ".join(spec.name for spec in usual.parameters)
     others = " ".join(spec.name for law in laws for spec in law.parameters)

@@ -15,8 +15,9 @@ import numpy as np
 from scipy.special import expit
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, LoadCases
+from sk120stiff.effects import Effect, Elastic, LoadCases, Weighing
 from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
+from sk120stiff.explain.absolute.choose import Chosen, usual
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.standing import alternatives
 from sk120stiff.explain.candidates.regression import price_of_law
@@ -33,6 +34,7 @@ from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.written import with_values
 from sk120stiff.model import Parameter
 
+EVEN = 0.5  # of the links' weight, from where on they hardly weigh and the rest is no share of it
 HALF_A_STEP = 12.0**-0.5  # standard deviation of what is anywhere from half a step down to one up
 
 Block = tuple[Effect, Array, Array]  # a law, usual sizes (p,) and columns (M, p) of its parameters
@@ -101,6 +103,27 @@ def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
     return linear
 
 
+def with_fewer(linear: Linear, found: Chosen, laws: Laws) -> tuple[Linear, Chosen]:
+    """Without a name that another law of a second one makes needless.
+
+    That the light payload and all links are off by as much is that the heavy one is off.
+    """
+    for e, own in laws.items():
+        for gone in [each for each in found.order if usual(linear.candidates[each]) <= 0.0]:
+            rest = linear.less(found.order, gone)
+            if e not in rest or len(rest) < len(found.order) - 1:
+                continue
+            noise = linear.noise(found.order)
+            now = linear.score(found.order, noise) + usual(linear.candidates[gone])
+            for law in own:
+                price = 0.5 * price_of_law(law[0], len(own), usual=law == own[0])
+                other = linear.by_law(e, *law)
+                if other.score(rest, noise) - price >= now:
+                    linear, found = other, replace(found, order=rest)
+                    break
+    return linear, found
+
+
 def beside_laws(
     final: Calibration, linear: Linear, chosen: tuple[int, ...], laws: Laws
 ) -> Calibration:
@@ -119,12 +142,24 @@ def beside_laws(
         there = _at_rest(*other, noise, load_cases)
         for name in doubt.keys() & there.keys():
             doubt[name] = max(doubt[name], share * abs(there[name] - here[name]))
+    off = _by_weight(final)
     more = [
-        0.0 if isinstance(p.effect, COUNTED) else doubt.get(p.quantity, 0.0)
+        0.0
+        if isinstance(p.effect, COUNTED)
+        else max(
+            doubt.get(p.quantity, 0.0),
+            off * abs(p.internal) if isinstance(p.effect, Elastic) else 0.0,
+        )
         for p in final.parameters
     ]
     moved = np.array(more) / final.problem.scale
     return with_values(replace(final, selection_uncertainty=moved))
+
+
+def _by_weight(final: Calibration) -> float:
+    """Share by which all that yields is off, if not the links but the payloads weigh otherwise."""
+    own = [p.internal for p in final.parameters if isinstance(p.effect, Weighing)]
+    return max((abs(value) / max(1.0 + value, EVEN) for value in own), default=0.0)
 
 
 def _at_rest(

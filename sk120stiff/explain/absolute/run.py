@@ -31,7 +31,7 @@ from sk120stiff.explain.absolute.choose import (
     threshold,
 )
 from sk120stiff.explain.absolute.explained import Explained, Named
-from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at
+from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at, with_fewer
 from sk120stiff.explain.absolute.linear import Linear, everything
 from sk120stiff.explain.absolute.other_poses import NextPoses, elsewhere, never_told, next_poses
 from sk120stiff.explain.absolute.remainder import where_it_lives
@@ -192,6 +192,8 @@ def _selected(
     if seen is not base:  # about the rigid arm near ties are not told
         found = by_likeliest(linear, found)
     laws = laws_at(linear, found.order, seen)
+    linear, found = with_fewer(linear, found, laws)
+    laws = {e: own for e, own in laws.items() if e in found.order}
     return by_best_laws(linear, found.order, laws), found, laws, hidden
 
 

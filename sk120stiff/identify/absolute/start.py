@@ -28,6 +28,7 @@ def options_of(readings: Measurements) -> Options:
         stations=("",) if said is None else said.stood[0],
         thermal=said is not None and said.temperature is not None,
         rotations=said is not None and said.channels.rotation is not None,
+        masses=() if said is None else tuple(sorted({float(m) for m in said.payload if m > 0.0})),
         hung=said is not None and bool(said.payload.any()) and not readings.wrench.any(),
     )
 
