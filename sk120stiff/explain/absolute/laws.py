@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, LoadCases
+from sk120stiff.effects import Counting, Effect, LoadCases, referred
 from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.standing import alternatives
@@ -49,6 +49,8 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
     for e in chosen:
         own = linear.candidates[e]
         usual = type(own).at(model.robot, own.where, told)
+        if isinstance(own, Counting) and own.reference is not None:
+            usual = referred(usual, [own.reference])
         others = usual.other_laws(problem.load_cases)
         if others:
             # a law may stand that other rows made usual: a wild one was the heaviest
