@@ -266,4 +266,22 @@ OF_POSITIONS: tuple[Fault, ...] = (
         grams_taken_for_kilograms=('"g": 1e-3', '"g": 1.0'),
         any_word_a_mass=("elif len(heavy) == 1:", "elif False:"),
     ),
+    *of(
+        "effects/load_cases.py", *tests("absolute", "references"),
+        warmth_over_that_of_each_file=("values + (reference.until(own) or 0.0)", "values + 0.0 * (reference.until(own) or 0.0)"),
+    ),
+    *of(
+        "effects/reference.py", *tests("absolute", "references"),
+        every_clock_is_the_same=("if other.last < self.value - lasted or other.value > self.last + lasted:", "if False and lasted:"),
+        a_clock_that_ends_with_the_fit=("other.value > self.last + lasted", "other.value > self.last"),
+        a_clock_that_begins_with_the_fit=("other.last < self.value - lasted", "other.last < self.value"),
+    ),
+    *of(
+        "effects/counting.py", *tests("absolute", "references"),
+        a_reference_of_every_fit=("self.reference.beside(own) if self.reference else own", "own"),
+    ),
+    *of(
+        "effects/reading_drift.py", *tests("absolute", "references"),
+        what_has_warmed_up_before_the_first=("np.maximum(elapsed, 0.0) if load_cases.absolute else elapsed", "elapsed"),
+    ),
 )  # fmt: skip

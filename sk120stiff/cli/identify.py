@@ -23,7 +23,7 @@ from sk120stiff.data_checks import (
     without_stuck,
     without_wild,
 )
-from sk120stiff.effects import effect
+from sk120stiff.effects import CATALOGUE
 from sk120stiff.errors import InputError, two_digits, warn
 from sk120stiff.files import will_write
 from sk120stiff.identify import (
@@ -44,6 +44,7 @@ from sk120stiff.identify import (
     weak_directions,
     yardstick,
 )
+from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.report import noise_sentence, place_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
@@ -181,9 +182,7 @@ def with_effect(model: Model, text: str, readings: Measurements) -> Model:
     from sk120stiff.effects import load_cases_of
 
     name, _, where = text.partition(":")
-    found = effect(
-        model.robot, name, where or None, poses=readings.poses, timed=readings.time is not None
-    )
+    found = CATALOGUE.effect(model.robot, name, where or None, options_of(readings))
     if not found.applies_to(load_cases_of(model.robot, readings)):
         raise InputError(
             f"these readings lack what the effect {found.id!r} needs",

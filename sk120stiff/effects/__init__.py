@@ -14,15 +14,18 @@ from sk120stiff.effects.base import (
     Weighing,
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
+from sk120stiff.effects.counting import Counting, referred
 from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.reference import Reference, references_of
 from sk120stiff.effects.words import catalogue_words, comment_lines, words_of
 
 __all__ = [
     "CATALOGUE",
     "Catalogue",
+    "Counting",
     "Effect",
     "Elastic",
     "Elongation",
@@ -35,6 +38,7 @@ __all__ = [
     "Options",
     "ParameterSpec",
     "ReadingError",
+    "Reference",
     "Switching",
     "Viewpoint",
     "Weighing",
@@ -44,5 +48,7 @@ __all__ = [
     "effect",
     "load_case",
     "load_cases_of",
+    "references_of",
+    "referred",
     "words_of",
 ]

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.effects.latest import Latest
+from sk120stiff.effects.reference import Reference, references_of
 from sk120stiff.robot import Robot, Screws, VirtualJoint
 from sk120stiff.stiffness.wrench import wrenches
 
@@ -56,6 +57,7 @@ class LoadCases:
         side: (N, n) side from which each joint came to its pose, -1, 0 or 1; None without an order.
         zero_group, repeat: (N,) which zero reading a row subtracts, and the how-manieth repeat it
             is; None where every row stands alone, and where nothing was repeated.
+        references: From where `order`, `time` and `temperature` of positions count.
     """
 
     robot: Robot
@@ -84,11 +86,24 @@ class LoadCases:
     repeat: Integers | None = None
     order_at_zero: Array | None = None
     time_at_zero: Array | None = None
+    references: tuple[Reference, ...] = ()
 
     @property
     def count(self) -> int:
         """Number of readings N."""
         return len(self.a)
+
+    def since(self, of: str, reference: Reference | None) -> Array | None:
+        """(N,) `temperature`, `time` or `order` since a reference [K, s or 1]; None: not read.
+
+        Without one, and by another clock than that of the reference, it is since these readings'
+        own.
+        """
+        values: Array | None = getattr(self, of)
+        own = next((known for known in self.references if known.of == of), None)
+        if values is None or reference is None or own is None:
+            return values
+        return np.asarray(values + (reference.until(own) or 0.0))
 
     @cached_property
     def gravity_torque(self) -> Array:
@@ -331,7 +346,7 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
     labels = said.groups
     names = () if labels is None else tuple(dict.fromkeys(labels))
     stations, stood = said.stood
-    temperature = said.temperature
+    temperature, references = said.temperature, references_of(measurements)
     clock = measurements.order if measurements.order is not None else measurements.time
     return replace(
         plain,
@@ -351,6 +366,7 @@ def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> L
         station=stood,
         station_names=stations,
         side=None if clock is None else approach_sides(plain.a, clock),
+        references=references,
     )
 
 

@@ -11,9 +11,11 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import ReadingError, scale_of
+from sk120stiff.effects.counting import Counting
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
+from sk120stiff.effects.reference import ORDER, TIME
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 
@@ -24,13 +26,16 @@ OVER = "_over_"  # rate_x_over_40: at first, dying away over 40 readings
 
 
 @dataclass(frozen=True)
-class ReadingDrift(ReadingError):
+class ReadingDrift(Counting, ReadingError):
     """Readings wander with time (or with their order, where no time is known) since the zero.
 
     A drift that goes on adds r (t − t₀) to a reading at t whose zero was read at t₀. What warms up
     drifts fast at first and then no more, with t counted from the first reading of the series::
 
         r T (exp(−t₀/T) − exp(−t/T))
+
+    Positions have no zero: they count from the first of those that the model was identified from,
+    before which nothing has warmed up.
 
     Attributes:
         per_second: By the clock, not by the order.
@@ -85,6 +90,11 @@ class ReadingDrift(ReadingError):
             )
         )  # fmt: skip
 
+    @property
+    def goes_with(self) -> str:
+        """See `Counting.goes_with`."""
+        return TIME if self.per_second else ORDER
+
     def applies_to(self, load_cases: LoadCases) -> bool:
         """The file must say in which order, or when, it was read."""
         return self._clock(load_cases)[0] is not None
@@ -109,10 +119,9 @@ class ReadingDrift(ReadingError):
         return (FEWEST * float(np.median(steps)), float(clock[-1])) if len(steps) else (0.0, 0.0)
 
     def _clock(self, load_cases: LoadCases) -> tuple[Array | None, Array | None]:
-        """Since the zero reading, and when that one was taken."""
-        if self.per_second:
-            return load_cases.time, load_cases.time_at_zero
-        return load_cases.order, load_cases.order_at_zero
+        """Since the zero reading, or the reference, and when the former was taken."""
+        at_zero = load_cases.time_at_zero if self.per_second else load_cases.order_at_zero
+        return load_cases.since(self.goes_with, self.reference), at_zero
 
     @cached_property
     def generators(self) -> Array:
@@ -124,8 +133,9 @@ class ReadingDrift(ReadingError):
         known, at = self._clock(load_cases)
         elapsed = np.zeros(load_cases.count) if known is None else known
         begun = np.zeros(load_cases.count) if at is None else at
+        warming = np.maximum(elapsed, 0.0) if load_cases.absolute else elapsed
         courses = [
-            elapsed if T == 0.0 else T * np.exp(-begun / T) * -np.expm1(-elapsed / T)
+            elapsed if T == 0.0 else T * np.exp(-begun / T) * -np.expm1(-warming / T)
             for T in self.over
         ]
         return np.concatenate([c[:, None, None] * np.eye(3) for c in courses], axis=2)

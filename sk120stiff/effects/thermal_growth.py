@@ -10,22 +10,28 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Imposed, scale_of
+from sk120stiff.effects.counting import Counting
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.reference import TEMPERATURE, TIME
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint
 from sk120stiff.robot.rotations import homogeneous
 
 
 @dataclass(frozen=True)
-class ThermalGrowth(Imposed):
-    """A link's length goes with the temperature, or with time where no temperature was read."""
+class ThermalGrowth(Counting, Imposed):
+    """A link's length goes with the temperature, or with time where no temperature was read.
+
+    At the reference it is as the model's geometry has it: at the mean temperature, or the first
+    moment, of the readings that the model was identified from.
+    """
 
     thermal: bool = False
     name: ClassVar[str] = "thermal_growth"
     place: ClassVar[str] = "a link"
-    equation: ClassVar[str] = "length_true = length + g * (temperature or time)"
+    equation: ClassVar[str] = "length_true = length + g * (temperature or time since the reference)"
     axes: ClassVar[str] = "the line from the link's joint to the next"
     needs: ClassVar[str] = "positions with a column temperature[degC] or time[s]"
     only_absolute: ClassVar[bool] = True
@@ -58,8 +64,13 @@ class ThermalGrowth(Imposed):
         cause = "as it gets warmer" if self.thermal else "as time passes"
         return f"The link {self.where} grows {cause}."
 
+    @property
+    def goes_with(self) -> str:
+        """See `Counting.goes_with`."""
+        return TEMPERATURE if self.thermal else TIME
+
     def _clock(self, load_cases: LoadCases) -> Array | None:
-        return load_cases.temperature if self.thermal else load_cases.time
+        return load_cases.since(self.goes_with, self.reference)
 
     def applies_to(self, load_cases: LoadCases) -> bool:
         """The file must hold what it goes with."""
@@ -74,7 +85,7 @@ class ThermalGrowth(Imposed):
         return (VirtualJoint(f"{self.id}.length", link.index, end, axis, revolute=False),)
 
     def shifts(self, load_cases: LoadCases) -> Array:
-        """Temperature or time of each reading."""
+        """Temperature or time of each reading since the reference."""
         clock = self._clock(load_cases)
         elapsed = np.zeros(load_cases.count) if clock is None else clock
         return np.asarray(elapsed[:, None, None])

@@ -9,6 +9,7 @@ from sk120stiff.model.compliance import (
     seen_from,
     without_marker,
 )
+from sk120stiff.model.counted_from import counted_from, warn_of_references
 from sk120stiff.model.file import (
     base_model,
     model_from_text,
@@ -53,6 +54,7 @@ __all__ = [
     "Share",
     "Uncertainty",
     "base_model",
+    "counted_from",
     "held_loads",
     "instrument_frames",
     "joint_shares",
@@ -75,6 +77,7 @@ __all__ = [
     "typical_model",
     "typical_parameters",
     "warn_of_far_bend",
+    "warn_of_references",
     "with_own_errors",
     "without_marker",
     "write_model",

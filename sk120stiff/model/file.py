@@ -9,6 +9,7 @@
     effects:
       - name: joint_springs
         where: joint_1_s
+        reference: ...              # see reference_file.py; of what goes with warmth or a clock
         parameters:
           stiffness: {value: 1409800.0, unit: N*m/rad, std: null, free: true, origin: "..."}
     provenance: {command: ..., data: sha256:..., date: ...}
@@ -33,6 +34,7 @@ from sk120stiff.files import Vector, parse_yaml, read_text, validated, write_ato
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model
 from sk120stiff.model.parameter import Parameter
+from sk120stiff.model.reference_file import ReferenceSection, reference_document, with_reference
 from sk120stiff.model.typical import typical_model
 from sk120stiff.model.uncertainty_file import (
     ModelDumper,
@@ -65,6 +67,7 @@ class _Value(_Strict):
 class _Effect(_Strict):
     name: str
     where: str
+    reference: ReferenceSection | None = None
     parameters: dict[str, _Value]
 
 
@@ -93,6 +96,7 @@ def model_text(model: Model, *, folder: Path | None = None) -> str:
             {
                 "name": item.name,
                 "where": item.where,
+                **reference_document(item),
                 "parameters": {
                     p.spec.name: _written(p) for p in model.parameters if p.effect == item
                 },
@@ -219,6 +223,7 @@ def model_from_text(
             entry.parameters = translated(kind, entry.parameters, place)
             told = kind.options_of({key: item.unit for key, item in entry.parameters.items()})
             found = catalogue.effect(arm, entry.name, entry.where, told)
+            found = with_reference(found, entry.reference)
         except InputError as error:
             raise InputError(error.what, where=place, remedy=error.remedy) from error
         parameters = [_read(found, spec.name, entry, place) for spec in found.parameters]

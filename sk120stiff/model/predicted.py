@@ -12,6 +12,7 @@ from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
 from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements
+from sk120stiff.model.counted_from import warn_of_references
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
 from sk120stiff.model.pose_reading import move_by_load, read_poses
@@ -125,6 +126,9 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
             of these positions stands.
         Refusal: The springs cannot hold a load.
 
+    Warns:
+        ToolkitWarning: It is in doubt how warm, or how late, the readings are to the model.
+
     Examples:
         >>> import sk120stiff as sk
         >>> data = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
@@ -139,6 +143,7 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
     if measurements.absolute is None:
         return predict_with_uncertainty(model, load_cases)
     refuse_unknown_place(model, measurements)
+    warn_of_references(model, measurements)
     return predict_channels(model, measurements)
 
 

@@ -9,6 +9,9 @@ import pytest
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.robot import load_robot
+from tests.absolute.arm import tracked
+from tests.absolute.test_forms import FIT, NOISE, SIGMA
+from tests.absolute.test_references import WARM, A, grown, readings_of
 
 MODEL = "robots/motoman_sk120/model.yaml"
 DATA = Path("robots/motoman_sk120/data")
@@ -116,3 +119,20 @@ def test_where_the_marker_of_a_calibration_sat_is_said(run, tmp_path: Path) -> N
         found = run("predict", used, str(DATA / "table2_measured.csv"))
         assert found.code == 0, found.stderr
         assert ("50 mm off its stated place" in " ".join(found.stdout.split())) == told
+
+
+def test_identify_takes_growth_and_writes_from_where_it_counts(run, tmp_path: Path) -> None:
+    """Read at a temperature and without a clock."""
+    x = tracked(grown(A, WARM - 20.0)) + SIGMA * np.random.default_rng(7).normal(size=(60, 3))
+    data = readings_of(tmp_path, A, x, FIT + NOISE, "temperature[degC]", WARM)
+    out = tmp_path / "model.yaml"
+    asked = ("--with", "thermal_growth:l2", "--out", str(out), "--json")
+    assert run("identify", str(data.path), *asked).code == 0
+    assert f"reference: {{temperature: {WARM.mean():.3f}"[:30] in out.read_text(encoding="utf-8")
+    for t, kelvin in ((20.0, 0.0), (60.0, 40.0)):
+        settings = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm}\n"
+        at = tracked(grown(A[:1], np.array([kelvin])))
+        row = readings_of(tmp_path / f"{t:g}", A[:1], at, settings, "temperature[degC]", [t])
+        said = run("predict", str(out), str(row.path), "--json").document["rows"][0]
+        for axis in "xyz":
+            assert abs(said[f"gap_{axis}[um]"]) < 4.0 * said[f"std_parameters_{axis}[um]"]

@@ -17,6 +17,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.noise_sizes import wild_beside
 from sk120stiff.identify.absolute.placed_anew import placed_anew
 from sk120stiff.measurements import Measurements
+from sk120stiff.model import warn_of_references
 
 RIGID = "rigid"  # the model that has no effect
 
@@ -162,6 +163,7 @@ def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
 
     Where the tracker stands elsewhere by then, its frame is that of these readings.
     """
+    warn_of_references(final.model, others)
     moved = placed_anew(final.model, others)
     if moved is not None:
         final = replace(final, model=moved.model)

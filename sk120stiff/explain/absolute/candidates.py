@@ -21,6 +21,7 @@ from sk120stiff.effects import (
     ReadingError,
     Weighing,
     load_cases_of,
+    referred,
 )
 from sk120stiff.effects.gear import GearHardening, LostMotion
 from sk120stiff.effects.joint_frame import JointFrame
@@ -106,7 +107,10 @@ def linear_at(
     own = [k for k, p in enumerate(seen.parameters) if p.effect.id in present]
     Q = np.asarray(np.linalg.qr(seen.jacobian[:, own])[0])
     fitted = {effect.id: effect for effect in model.effects if effect.id not in present}
-    effects = tuple(fitted.get(effect.id, effect) for effect in effects)  # by the law it was given
+    references = base.problem.load_cases.references
+    effects = tuple(  # by the law it was given
+        fitted.get(effect.id, referred(effect, references)) for effect in effects
+    )
     laws: dict[Effect, tuple[Effect, ...]] = {
         each: (each, *each.other_laws(problem.load_cases))
         for each in effects if isinstance(each, LoadError) and each.id not in fitted

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import expit
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect, Elastic, LoadCases, Weighing
+from sk120stiff.effects import Counting, Effect, Elastic, LoadCases, Weighing, referred
 from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
 from sk120stiff.explain.absolute.choose import Chosen, usual
 from sk120stiff.explain.absolute.linear import Linear
@@ -55,6 +55,8 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
     for e in chosen:
         own = linear.candidates[e]
         usual = type(own).at(model.robot, own.where, told)
+        if isinstance(own, Counting) and own.reference is not None:
+            usual = referred(usual, [own.reference])
         others = usual.other_laws(problem.load_cases)
         near = [law.nearby_laws(problem.load_cases) for law in (usual, *others)]
         others = (*others, *chain.from_iterable(near))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic
+from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic, references_of
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.gauge import Frozen, least_set
 from sk120stiff.identify.absolute.gauss_newton import gauss_newton
@@ -38,7 +38,7 @@ from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.placing import Placing, place
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import targets_on_tool
-from sk120stiff.model import Model
+from sk120stiff.model import Model, counted_from
 from sk120stiff.robot.rotations import rotation_of
 
 ROUNDS = 3  # of fitting, setting wild rows aside, and learning how large the noise is
@@ -159,7 +159,7 @@ def calibrate(
     start = started(
         model, readings, placed, geometry=geometry, mounted=mounted, catalogue=catalogue
     )
-    start, unloaded = loaded(start, readings)
+    start, unloaded = loaded(counted_from(start, references_of(readings.masked())), readings)
     kept_back = {start.parameter(name).name for name in freedom}
     start = replace(
         start,

@@ -1,0 +1,42 @@
+"""Effects that count a temperature or a clock, and from where they do."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from sk120stiff.effects.base import Effect
+from sk120stiff.effects.reference import Reference
+
+
+@dataclass(frozen=True)
+class Counting(Effect):
+    """An effect that goes with the temperature, the time or the order of positions.
+
+    Displacements have a zero reading, which is their reference.
+
+    Attributes:
+        reference: From where it counts, which is where it does nothing: a fit takes that of its
+            readings, and a model's file keeps it. None: from the readings at hand.
+    """
+
+    reference: Reference | None = field(default=None, kw_only=True)
+
+    @property
+    @abstractmethod
+    def goes_with(self) -> str:
+        """What it counts: ``temperature``, ``time`` or ``order``."""
+
+    def referred(self, references: Iterable[Reference]) -> Self:
+        """The effect as it is fitted to readings that have these references; see `beside`."""
+        own = next((known for known in references if known.of == self.goes_with), None)
+        if own is None:
+            return self
+        return replace(self, reference=self.reference.beside(own) if self.reference else own)
+
+
+def referred(effect: Effect, references: Iterable[Reference]) -> Effect:
+    """An effect as it is fitted to readings that have these references."""
+    return effect.referred(references) if isinstance(effect, Counting) else effect
