@@ -67,10 +67,6 @@ class JointOffset(Geometric):
         slides = robot.prismatic[robot.actuated.index(where)]
         return cls(where, scale_of(robot), slides=slides)
 
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The actuated joint itself."""
-        return (self.where,)
-
 
 @dataclass(frozen=True)
 class ToolOffset(Geometric):
