@@ -14,7 +14,6 @@ has its effects in `CATALOGUE` from the start.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from difflib import get_close_matches
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from types import MethodType
@@ -50,7 +49,7 @@ from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
 from sk120stiff.effects.tracker_frame import TrackerFrame
 from sk120stiff.effects.transmission_error import TransmissionError
-from sk120stiff.errors import InputError, warn
+from sk120stiff.errors import InputError, meant, warn
 from sk120stiff.files import html_table
 from sk120stiff.robot import Robot
 
@@ -219,10 +218,9 @@ class Catalogue:
             >>> print(sk.CATALOGUE.unknown("base_rockin").what)
             there is no effect 'base_rockin' (did you mean 'base_rocking'?)
         """
-        close = get_close_matches(name, self.names, n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
         return InputError(
-            f"there is no effect {name!r}{hint}", remedy=f"Effects are: {', '.join(self.names)}."
+            f"there is no effect {name!r}{meant(name, self.names)}",
+            remedy=f"Effects are: {', '.join(self.names)}.",
         )
 
 
