@@ -60,23 +60,17 @@ class BaseRocking(StraightPart):
             meaning="moment about x over the turn about y that it brings, and the other way round",
             signed=True,
         )
-        return (
+        own = (
             compliance(
-                "stiffness_x",
+                f"stiffness_{label}",
                 softest=3e5,
                 typical=1e7,
                 scale=self.scale,
-                meaning="against rocking about x of the base frame",
-            ),
-            compliance(
-                "stiffness_y",
-                softest=3e5,
-                typical=1e7,
-                scale=self.scale,
-                meaning="against rocking about y of the base frame",
-            ),
-            *([cross] if self.askew else []),
+                meaning=f"against rocking about {label} of the base frame",
+            )
+            for label in "xy"
         )
+        return (*own, *([cross] if self.askew else []))
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
