@@ -140,8 +140,10 @@ def two_digits(value: float) -> str:
     return f"{value:.0f}" if 99.5 <= abs(value) < 1e5 else f"{value:.2g}"
 
 
-def listed(words: Sequence[str], joint: str = "and") -> str:
-    """``a, b and c``: names in a sentence."""
+def listed(words: Sequence[str], joint: str = "and", most: int | None = None) -> str:
+    """``a, b and c``: names in a sentence; of more than `most` the first, ``a, b and 3 more``."""
+    if most is not None and len(words) > most:
+        words = [*words[:most], f"{len(words) - most} more"]
     if len(words) < 2:
         return "".join(words)
     return f"{', '.join(words[:-1])} {joint} {words[-1]}"

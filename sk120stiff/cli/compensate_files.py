@@ -5,7 +5,6 @@ The sheet has the path before and after, predicted and as it came back.
 
 from __future__ import annotations
 
-import hashlib
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
@@ -21,7 +20,7 @@ from sk120stiff.cli.opening import model_file
 from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.errors import InputError, warn
 from sk120stiff.explain.answer.document import share_entries
-from sk120stiff.files import read_bytes, write_atomically
+from sk120stiff.files import sha256_of, write_atomically
 from sk120stiff.model import Model, typical_parameters
 from sk120stiff.programs import Language
 from sk120stiff.programs.bad_targets import refuse_bad_targets
@@ -56,7 +55,7 @@ def origin(named: str, model: Model, path: Path) -> list[str]:
     """From which program, model, data and path a result comes: the first lines of a header."""
     file = model_file(named) or find_robot(named).model_file
     of_model = f"Model: {named}" + (
-        "" if file is None else f", {file.name} with SHA-256 {_digest(file)}"
+        "" if file is None else f", {file.name} with SHA-256 {sha256_of(file)}"
     )
     data = [
         f"{key} {model.provenance[key]}"
@@ -69,13 +68,9 @@ def origin(named: str, model: Model, path: Path) -> list[str]:
         f"Written by sk120stiff {__version__}, compensated for the deflection under load.",
         f"{of_model}. {typical}"
         + (f"Fitted to {', '.join(data)}." if data else "It names no data."),
-        f"Path: {path.name}, SHA-256 {_digest(path)}.",
+        f"Path: {path.name}, SHA-256 {sha256_of(path)}.",
         f"Robot: {model.robot.name}.",
     ]
-
-
-def _digest(path: Path) -> str:
-    return hashlib.sha256(read_bytes(path)).hexdigest()
 
 
 def write_program(

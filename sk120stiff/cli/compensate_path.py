@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, warn
+from sk120stiff.errors import InputError, listed, warn
 from sk120stiff.programs import READERS
 from sk120stiff.programs.bad_targets import least_turn
 from sk120stiff.programs.placing import TOOL_DOWN, part_frame, placed, tool_rotation
@@ -103,14 +103,8 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
     tool = tool_rotation(options.tool_rpy or TOOL_DOWN)
     read = reader(file, chord=chord, step=step)
     if read.left_out:
-        words = ", ".join(
-            f"{word} (line {line})" for word, line in list(read.left_out.items())[:12]
-        )
-        more = len(read.left_out) - 12
-        warn(
-            f"words that do not move the tool are not carried over: {words}"
-            + (f" and {more} more" if more > 0 else "")
-        )
+        words = [f"{word} (line {line})" for word, line in read.left_out.items()]
+        warn(f"words that do not move the tool are not carried over: {listed(words, most=12)}")
     for sentence in read.assumed:
         warn(sentence.removesuffix("."))
     said = (

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.cli.tables import table
+from sk120stiff.errors import listed
 from sk120stiff.measurements.importers import Column, Imported, Told
 from sk120stiff.measurements.importers.words import kind_of
 from sk120stiff.measurements.registration import Registration
@@ -188,8 +189,7 @@ def preview_of(found: Imported, robot: Robot) -> list[object]:
         by_reason = groupby(sorted(sheet.skipped, key=lambda s: (s[1], s[0])), key=lambda s: s[1])
         for reason, group in by_reason:
             lines = [str(line) for line, _ in group]
-            more = f" and {len(lines) - SHOWN} more" if len(lines) > SHOWN else ""
-            parts.append(f"- line {', '.join(lines[:SHOWN])}{more}: {reason}")
+            parts.append(f"- line {listed(lines, most=SHOWN)}: {reason}")
     if draft.unused:
         parts.append("Not taken over:")
         parts += [f"- {item}" for item in draft.unused]
@@ -243,9 +243,8 @@ def _placing(found: Imported, robot: Robot) -> list[object]:
     aside = [str(found.draft.sheet.lines[k]) for k in np.flatnonzero(found.wild)]
     if aside:
         parts.append(
-            f"Far off all others, and not counted here: line {', '.join(aside[:SHOWN])}"
-            + (f" and {len(aside) - SHOWN} more" if len(aside) > SHOWN else "")
-            + ". They are written all the same."
+            f"Far off all others, and not counted here: line {listed(aside, most=SHOWN)}. They are "
+            "written all the same."
         )
     stations = tuple(dict.fromkeys(found.draft.stations or ("",)))
     rows = [

@@ -51,10 +51,9 @@ def _held_out(found: HeldOutFile, problem: PoseProblem) -> tuple[dict[str, objec
     said = f"Held-out file: {1e6 * found.rms:.3g} {problem.rms_unit}"
     said += f", {1e6 * found.distance:.3g} µm mean distance" if whole else ""
     if len(rows):
-        lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows[:LISTED]]
-        more = [f"{len(rows) - LISTED} more"] if len(rows) > LISTED else []
+        lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows]
         lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
-        said += f". Not counted: {lie} far off all others, {listed([*lines, *more])}; with "
+        said += f". Not counted: {lie} far off all others, {listed(lines, most=LISTED)}; with "
         said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * found.rms_of_all:.3g} {unit}"
     return document, f"{said}." + (f" {found.anew}" if found.anew else "")
 

@@ -1,6 +1,7 @@
 """Physical causes by name: each says how it enters, what it is described by, where it can act."""
 
 from sk120stiff.effects.base import (
+    AxisByAxis,
     Effect,
     Elastic,
     Geometric,
@@ -24,6 +25,7 @@ from sk120stiff.effects.words import catalogue_words, comment_lines, words_of
 
 __all__ = [
     "CATALOGUE",
+    "AxisByAxis",
     "Catalogue",
     "Counting",
     "Effect",

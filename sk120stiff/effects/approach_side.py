@@ -51,10 +51,6 @@ class ApproachSide(Geometric):
         sides = load_cases.side[:, load_cases.robot.actuated.index(self.where)]
         return bool((sides > 0).any() and (sides < 0).any())
 
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The joint itself."""
-        return (self.where,)
-
     def shifts(self, load_cases: LoadCases) -> Array:
         """The side of each reading."""
         if load_cases.side is None:

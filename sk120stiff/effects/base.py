@@ -115,7 +115,7 @@ class Effect(ABC):
     @classmethod
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
         """What it was told when parameters of these names, and their units, were written."""
-        return Options()
+        return Options(shape=tuple(parameters))
 
     @classmethod
     def sample(cls) -> Self:
@@ -203,7 +203,19 @@ class Effect(ABC):
         return ()
 
 
-class Elastic(Effect):
+class Moving(Effect):
+    """An effect that has to do with coordinates: those of motors, or of joints of its own."""
+
+    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
+        """Joints that the effect adds to the chain; none where motors' coordinates move."""
+        return ()
+
+    def coordinates(self, robot: Robot) -> tuple[str, ...]:
+        """Names of the k coordinates that move: own virtual joints, else the actuated joint."""
+        return tuple(joint.name for joint in self.virtual_joints(robot)) or (self.where,)
+
+
+class Elastic(Moving):
     """An effect that lets coordinates yield under load.
 
     Attributes:
@@ -218,14 +230,6 @@ class Elastic(Effect):
         """The same with as many parameters as its kind may have."""
         return self
 
-    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
-        """Joints that the effect adds to the chain; none where motors' coordinates yield."""
-        return ()
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """Names of the k coordinates that yield: actuated joints or own virtual joints."""
-        return tuple(joint.name for joint in self.virtual_joints(robot))
-
     @abstractmethod
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """Law e(τ) for torques (N, k) [N·m or N] and internal parameter values (P,)."""
@@ -236,14 +240,7 @@ class Elastic(Effect):
 
 
 class LinearElastic(Elastic):
-    """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ.
-
-    Attributes:
-        one_axis_each: Parameter k is the compliance of coordinate k alone, the same at all poses
-            (class attribute). Two such compliances about one axis are one.
-    """
-
-    one_axis_each: ClassVar[bool] = False
+    """Elongation linear in torque and in parameters: e = Σ_p values[p] · pattern_p τ."""
 
     @abstractmethod
     def patterns(self, load_cases: LoadCases) -> Array:
@@ -274,6 +271,14 @@ class LinearElastic(Elastic):
         )
 
 
+class AxisByAxis(LinearElastic):
+    """Parameter k is the compliance of coordinate k alone, the same at all poses."""
+
+    def patterns(self, load_cases: LoadCases) -> Array:
+        """A one on the diagonal each."""
+        return np.array([np.diag(row) for row in np.eye(len(self.parameters))])
+
+
 class Switching(Elastic):
     """An elastic law that jumps with the sign of a torque.
 
@@ -283,7 +288,7 @@ class Switching(Elastic):
     """
 
 
-class Geometric(Effect):
+class Geometric(Moving):
     """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p.
 
     Attributes:
@@ -291,14 +296,6 @@ class Geometric(Effect):
     """
 
     of_marker: ClassVar[bool] = False
-
-    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
-        """Rigid joints that carry the error; none where an actuated coordinate does."""
-        return ()
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """Names of the k coordinates that are shifted."""
-        return tuple(joint.name for joint in self.virtual_joints(robot))
 
     def marks(self, load_cases: LoadCases) -> bool:
         """Does it move the marker of these readings, and nothing of the arm?"""
@@ -313,20 +310,12 @@ class Geometric(Effect):
         return np.broadcast_to(np.eye(P), (load_cases.count, P, P))
 
 
-class Imposed(Effect):
+class Imposed(Moving):
     """Coordinates move by themselves, whatever the load is: z₀ + Σ_p values[p] s_p.
 
     They do so between the zero reading and the reading, so the unloaded arm stands where it should:
     time passes, a link warms up, a clamp creeps.
     """
-
-    def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
-        """Rigid joints that move; none where actuated coordinates do."""
-        return ()
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """Names of the k coordinates that move: actuated joints or own virtual joints."""
-        return tuple(joint.name for joint in self.virtual_joints(robot))
 
     @abstractmethod
     def shifts(self, load_cases: LoadCases) -> Array:

@@ -14,7 +14,6 @@ has its effects in `CATALOGUE` from the start.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from difflib import get_close_matches
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from types import MethodType
@@ -51,7 +50,7 @@ from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
 from sk120stiff.effects.tracker_frame import TrackerFrame
 from sk120stiff.effects.transmission_error import TransmissionError
-from sk120stiff.errors import InputError, warn
+from sk120stiff.errors import InputError, meant, warn
 from sk120stiff.files import html_table
 from sk120stiff.robot import Robot
 
@@ -221,10 +220,9 @@ class Catalogue:
             >>> print(sk.CATALOGUE.unknown("base_rockin").what)
             there is no effect 'base_rockin' (did you mean 'base_rocking'?)
         """
-        close = get_close_matches(name, self.names, n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
         return InputError(
-            f"there is no effect {name!r}{hint}", remedy=f"Effects are: {', '.join(self.names)}."
+            f"there is no effect {name!r}{meant(name, self.names)}",
+            remedy=f"Effects are: {', '.join(self.names)}.",
         )
 
 
@@ -352,9 +350,6 @@ def all_effects(
     *,
     poses: Sequence[str] = (),
     timed: bool = False,
-    series: Sequence[str] = (),
-    stations: Sequence[str] = ("",),
-    thermal: bool = False,
     absolute: bool = False,
     catalogue: Catalogue = CATALOGUE,
 ) -> tuple[Effect, ...]:
@@ -362,10 +357,7 @@ def all_effects(
 
     Those that positions alone show are left out unless readings are `absolute`.
     """
-    told = Options(
-        tuple(poses), timed, series=tuple(series), stations=tuple(stations), thermal=thermal,
-        rotations=absolute,
-    )  # fmt: skip
+    told = Options(tuple(poses), timed, rotations=absolute)
     return tuple(
         kind.at(robot, where, told)
         for kind in catalogue

@@ -49,11 +49,6 @@ class _RigError(_SensorError):
         """The error in the frame that the names of the parameters tell."""
         return cls(where, scale_of(robot), any(f"_{OF_RIG}" in name for name in options.shape))
 
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The names of the parameters tell the frame."""
-        return Options(shape=tuple(parameters))
-
     def other_laws(self, load_cases: LoadCases) -> tuple[Self, ...]:
         """The same in the other frame."""
         return (replace(self, of_rig=not self.of_rig),)

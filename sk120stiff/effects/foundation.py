@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Effect, LinearElastic
+from sk120stiff.effects.base import AxisByAxis, Effect
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
@@ -37,7 +37,6 @@ class BaseRocking(StraightPart):
         "axes of the base frame through the foundation point; z is the normal of the floor"
     )
     also: ClassVar[str] = f"with {CROSS}, where the stiff direction lies askew of the axes; {ALSO}"
-    one_axis_each: ClassVar[bool] = True
     yields_under: ClassVar[str] = "tips the base"
 
     @classmethod
@@ -61,23 +60,17 @@ class BaseRocking(StraightPart):
             meaning="moment about x over the turn about y that it brings, and the other way round",
             signed=True,
         )
-        return (
+        own = (
             compliance(
-                "stiffness_x",
+                f"stiffness_{label}",
                 softest=3e5,
                 typical=1e7,
                 scale=self.scale,
-                meaning="against rocking about x of the base frame",
-            ),
-            compliance(
-                "stiffness_y",
-                softest=3e5,
-                typical=1e7,
-                scale=self.scale,
-                meaning="against rocking about y of the base frame",
-            ),
-            *([cross] if self.askew else []),
+                meaning=f"against rocking about {label} of the base frame",
+            )
+            for label in "xy"
         )
+        return (*own, *([cross] if self.askew else []))
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
@@ -105,7 +98,7 @@ class NonlinearRocking(Nonlinear):
 
 
 @dataclass(frozen=True)
-class BaseSliding(LinearElastic):
+class BaseSliding(AxisByAxis):
     """The base shifts along the axes of the base frame."""
 
     name: ClassVar[str] = "base_sliding"
@@ -113,7 +106,6 @@ class BaseSliding(LinearElastic):
     equation: ClassVar[str] = "shift = force / K, along x, y and z"
     says: ClassVar[str] = "The base shifts on its foundation under the load."
     axes: ClassVar[str] = "axes of the base frame"
-    one_axis_each: ClassVar[bool] = True
     yields_under: ClassVar[str] = "pushes the base"
 
     @property
@@ -142,7 +134,3 @@ class BaseSliding(LinearElastic):
             VirtualJoint(f"{self.id}.{label}", -1, np.eye(4), np.eye(3)[k], revolute=False)
             for k, label in enumerate("xyz")
         )
-
-    def patterns(self, load_cases: LoadCases) -> Array:
-        """Each axis has a compliance of its own."""
-        return np.array([np.diag(row) for row in np.eye(3)])

@@ -12,6 +12,7 @@ from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint
+from sk120stiff.robot.rotations import homogeneous
 
 STANDS = "true minus reported coordinate; positive: the joint stands further than it reads"
 
@@ -41,6 +42,13 @@ def tool_slides(robot: Robot, name: str) -> tuple[VirtualJoint, ...]:
     )
 
 
+def link_slide(robot: Robot, link: str, name: str) -> VirtualJoint:
+    """A slide along a link, at its far end."""
+    joint = arm_joint(robot, link)
+    end = homogeneous(joint.along)
+    return VirtualJoint(name, joint.index, end, joint.directions[0], revolute=False)
+
+
 @dataclass(frozen=True)
 class JointOffset(Geometric):
     """The joint stands elsewhere than it reads."""
@@ -66,10 +74,6 @@ class JointOffset(Geometric):
         """The offset of one joint, in rad or m as the joint asks for."""
         slides = robot.prismatic[robot.actuated.index(where)]
         return cls(where, scale_of(robot), slides=slides)
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The actuated joint itself."""
-        return (self.where,)
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,4 @@ class LinkLength(Geometric):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""
-        link = arm_joint(robot, self.where)
-        end, along = np.eye(4), link.directions[0]
-        end[:3, 3] = link.along
-        return (VirtualJoint(f"{self.id}.length", link.index, end, along, revolute=False),)
+        return (link_slide(robot, self.where, f"{self.id}.length"),)

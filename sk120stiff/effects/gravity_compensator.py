@@ -60,10 +60,6 @@ class GravityCompensator(LinearElastic):
             and _stays_horizontal(robot, joint.index)
         )
 
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The actuated joint itself."""
-        return (self.where,)
-
     def patterns(self, load_cases: LoadCases) -> Array:
         """−cos θ, from the height of the link's far end over its near end."""
         robot = load_cases.robot

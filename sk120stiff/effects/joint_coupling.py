@@ -12,6 +12,7 @@ from sk120stiff.effects.base import Geometric
 from sk120stiff.effects.closure import PAIR
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.robot import Robot
 
 REACH = 2  # joints further on that a drive passes on its way
@@ -46,11 +47,7 @@ class JointCoupling(Geometric):
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every pair of turning joints of which the second follows within two on the way out."""
-        turning = [
-            joint
-            for joint, slides in zip(robot.actuated, robot.prismatic, strict=True)
-            if not slides
-        ]
+        turning = USUAL_PLACES["a joint that turns"](robot)
         return tuple(
             PAIR.join((first, second))
             for k, first in enumerate(turning)

@@ -5,11 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-import numpy as np
-
-from sk120stiff.arrays import Array
-from sk120stiff.effects.base import LinearElastic, scale_of
-from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.base import AxisByAxis, scale_of
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot
@@ -18,7 +14,7 @@ MEANING = "torque per angle (force per way) by which the drive yields; larger is
 
 
 @dataclass(frozen=True)
-class JointSprings(LinearElastic):
+class JointSprings(AxisByAxis):
     """θ − θ₀ = τ / K: gear, bearing and servo of one motor as one spring.
 
     For a joint that slides, K is in N/m.
@@ -31,7 +27,6 @@ class JointSprings(LinearElastic):
     equation: ClassVar[str] = "q - q_0 = torque / K"
     says: ClassVar[str] = "The drive of {where} yields under the torque it carries."
     axes: ClassVar[str] = "the axis of the joint itself"
-    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -56,11 +51,3 @@ class JointSprings(LinearElastic):
         """The spring of one joint, in N·m/rad or N/m as the joint asks for."""
         slides = robot.prismatic[robot.actuated.index(where)]
         return cls(where, scale_of(robot), slides=slides)
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The actuated joint itself."""
-        return (self.where,)
-
-    def patterns(self, load_cases: LoadCases) -> Array:
-        """e = c τ."""
-        return np.ones((1, 1, 1))

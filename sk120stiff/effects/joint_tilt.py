@@ -7,8 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.arrays import Array
-from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
@@ -29,7 +27,6 @@ class JointTilt(StraightPart):
     axes: ClassVar[str] = (
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
-    one_axis_each: ClassVar[bool] = True
     yields_under: ClassVar[str] = "{where} carries across its axis"
 
     @property
@@ -69,10 +66,6 @@ class JointTilt(StraightPart):
             VirtualJoint(f"{self.id}.{label}", joint.index, np.eye(4), axis)
             for label, axis in zip(("along", "across"), joint.tilt_axes(), strict=True)
         )
-
-    def patterns(self, load_cases: LoadCases) -> Array:
-        """Each axis has a compliance of its own."""
-        return np.array([np.diag(row) for row in np.eye(2)])
 
 
 class NonlinearTilt(Nonlinear):

@@ -8,7 +8,6 @@ polynomial of second degree in s, for which three stations suffice whatever ρ i
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import ClassVar, Self
@@ -16,7 +15,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import LinearElastic, scale_of
+from sk120stiff.effects.base import AxisByAxis, LinearElastic, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
@@ -103,11 +102,6 @@ class LinkBending(LinearElastic):
         plane, roll, minus, percent = found[0].groups()
         taper = TAPER if percent is None else int(percent) / (-100.0 if minus else 100.0)
         return cls(where, scale_of(robot), taper, roll is not None, plane is not None)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The law that the names of the parameters tell."""
-        return Options(shape=tuple(parameters))
 
     def special_case_of(self, robot: Robot) -> str | None:
         """What bends behind the last joint is the flange and what is bolted to it."""
@@ -209,7 +203,7 @@ class LinkBending(LinearElastic):
 
 
 @dataclass(frozen=True)
-class LinkTorsion(LinearElastic):
+class LinkTorsion(AxisByAxis):
     """A shaft of torsional stiffness GJ along the link."""
 
     name: ClassVar[str] = "link_torsion"
@@ -219,7 +213,6 @@ class LinkTorsion(LinearElastic):
     axes: ClassVar[str] = (
         "the line of the link, or the next joint's axis where the link is its shaft"
     )
-    one_axis_each: ClassVar[bool] = True
     yields_under: ClassVar[str] = "twists {where}"
 
     @property

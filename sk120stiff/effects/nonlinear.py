@@ -24,9 +24,9 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import (
+    AxisByAxis,
     Effect,
     Elastic,
-    LinearElastic,
     scale_of,
 )
 from sk120stiff.effects.elongation import Elongation
@@ -45,7 +45,7 @@ ALSO = (
 )
 
 
-class StraightPart(LinearElastic):
+class StraightPart(AxisByAxis):
     """The straight law of a part that may yield out of proportion too.
 
     Attributes:
@@ -60,11 +60,6 @@ class StraightPart(LinearElastic):
         """The part, out of proportion where names of parameters tell so."""
         scale = scale_of(robot)
         return cls.nonlinear.told_by(options.shape, where, scale) or cls(where, scale)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The law that the names of the parameters tell."""
-        return Options(shape=tuple(parameters))
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """Out of proportion, over the loads of some readings."""

@@ -9,6 +9,9 @@ from sk120stiff.robot.anatomy import arm_links
 
 USUAL_PLACES: dict[str, Callable[[Robot], tuple[str, ...]]] = {
     "a joint": lambda robot: robot.actuated,
+    "a joint that turns": lambda robot: tuple(
+        joint for joint, slides in zip(robot.actuated, robot.prismatic, strict=True) if not slides
+    ),
     "a link": lambda robot: tuple(joint.link for joint in arm_links(robot)),
     "the base frame": lambda robot: (robot.base_frame,),
     "the tool frame": lambda robot: (robot.tool_frame,),

@@ -11,13 +11,12 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Imposed, scale_of
 from sk120stiff.effects.counting import Counting
+from sk120stiff.effects.geometry import link_slide
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.reference import TEMPERATURE, TIME
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint
-from sk120stiff.robot.rotations import homogeneous
 
 
 @dataclass(frozen=True)
@@ -79,10 +78,7 @@ class ThermalGrowth(Counting, Imposed):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """A rigid slide along the link, at its far end."""
-        link = arm_joint(robot, self.where)
-        end = homogeneous(link.along)
-        axis = link.directions[0]
-        return (VirtualJoint(f"{self.id}.length", link.index, end, axis, revolute=False),)
+        return (link_slide(robot, self.where, f"{self.id}.length"),)
 
     def shifts(self, load_cases: LoadCases) -> Array:
         """Temperature or time of each reading since the reference."""

@@ -7,8 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.arrays import Array
-from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.robot import Robot, VirtualJoint
@@ -26,7 +24,6 @@ class ToolCompliance(StraightPart):
     equation: ClassVar[str] = "turn = moment / K and shift = force / K, axis by axis"
     says: ClassVar[str] = "The fixture at {where} yields between flange and measured point."
     axes: ClassVar[str] = "axes of the tool frame, at its origin"
-    one_axis_each: ClassVar[bool] = True
     yields_under: ClassVar[str] = "the tool carries"
 
     @property
@@ -71,10 +68,6 @@ class ToolCompliance(StraightPart):
             for kind, turns in (("turn", True), ("shift", False))
             for k, label in enumerate("xyz")
         )
-
-    def patterns(self, load_cases: LoadCases) -> Array:
-        """Each axis has a compliance of its own."""
-        return np.array([np.diag(row) for row in np.eye(6)])
 
 
 class NonlinearTool(Nonlinear):

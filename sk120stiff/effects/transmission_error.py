@@ -11,7 +11,6 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.parameter import ParameterSpec
-from sk120stiff.robot import Robot
 
 HARMONICS = (1, 2)  # once per turn: eccentric; twice: oval
 
@@ -39,19 +38,6 @@ class TransmissionError(Geometric):
             for k in HARMONICS
             for wave in ("sin", "cos")
         )  # fmt: skip
-
-    @classmethod
-    def places(cls, robot: Robot) -> tuple[str, ...]:
-        """Every actuated joint that turns."""
-        return tuple(
-            joint
-            for joint, slides in zip(robot.actuated, robot.prismatic, strict=True)
-            if not slides
-        )
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The joint itself."""
-        return (self.where,)
 
     def shifts(self, load_cases: LoadCases) -> Array:
         """Waves over the reported angle."""

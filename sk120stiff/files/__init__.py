@@ -8,7 +8,7 @@ from sk120stiff.files.cells import csv_text, guarded_cell, plain_cell
 from sk120stiff.files.html_table import html_table
 from sk120stiff.files.interrupts import remembered
 from sk120stiff.files.ledger import note_read, running, will_fill, will_write
-from sk120stiff.files.reading import read_bytes, read_text
+from sk120stiff.files.reading import read_bytes, read_text, sha256_of
 from sk120stiff.files.schema import Finite, Strict, Vector, validated
 from sk120stiff.files.writing import together, write_atomically
 from sk120stiff.files.yaml_text import parse_yaml, read_yaml
@@ -28,6 +28,7 @@ __all__ = [
     "read_yaml",
     "remembered",
     "running",
+    "sha256_of",
     "together",
     "validated",
     "will_fill",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from pathlib import Path
 
@@ -38,6 +39,14 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
             remedy="Check that it is the right one, or split it.",
         )
     return data
+
+
+def sha256_of(*paths: str | os.PathLike[str]) -> str:
+    """SHA-256 of what files hold, one after the other, in hexadecimal; errors of `read_bytes`."""
+    digest = hashlib.sha256()
+    for path in paths:
+        digest.update(read_bytes(path))
+    return digest.hexdigest()
 
 
 def read_text(path: str | os.PathLike[str]) -> str:

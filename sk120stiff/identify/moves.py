@@ -47,11 +47,6 @@ class Moves:
         return np.asarray(np.diag(self.models**2 + self.left_out**2) + self.foreign)
 
     @property
-    def std(self) -> Array:
-        """(P,) standard errors."""
-        return np.asarray(np.sqrt(np.diag(self.covariance)))
-
-    @property
     def elsewhere(self) -> Array:
         """(P,) how far from the estimates the values may lie instead, the noise for itself."""
         return np.hypot(self.models, np.sqrt(np.diag(self.foreign)))

@@ -26,7 +26,6 @@ from sk120stiff.measurements.columns import (
     UNCERTAINTIES,
     Roles,
 )
-from sk120stiff.measurements.rows import quantities
 from sk120stiff.measurements.table import Table
 
 if TYPE_CHECKING:
@@ -232,14 +231,12 @@ def _temperature(table: Table) -> Array:
 def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
     found: dict[str, Array] = {}
     if roles.has & set(POSITIONS):
-        found["position"] = np.column_stack(
-            [table.quantity(name, "length", allow_blank=True) for name in POSITIONS]
-        )
+        found["position"] = table.quantities(POSITIONS, "length", allow_blank=True)
     rotation = _rotation(table, roles)
     if rotation is not None:
         found["rotation"] = rotation
     if roles.has & set(DISPLACEMENTS):
-        found["displacement"] = quantities(table, DISPLACEMENTS, "length", allow_blank=True)
+        found["displacement"] = table.quantities(DISPLACEMENTS, "length", allow_blank=True)
     if roles.has & set(TURNS):
         found["turn"] = np.full((len(table.lines), 3), np.nan)
         for k, name in enumerate(TURNS):
@@ -247,7 +244,7 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
                 found["turn"][:, k] = table.quantity(name, "angle", allow_blank=True)
     if "l" in roles.has:
         found["distance"] = table.quantity("l", "length", allow_blank=True)
-        found["anchor"] = quantities(table, ANCHORS, "length")
+        found["anchor"] = table.quantities(ANCHORS, "length")
     if "d" in roles.has:
         found["shift"] = table.quantity("d", "length", allow_blank=True)
         found["along"] = _directions(table, DIRECTIONS, found["shift"])
@@ -277,7 +274,7 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
             )
         )  # fmt: skip
         sigma |= {"rotation": turn, "inclination": turn, "turn": turn * since_zero}
-    rows = quantities(table, UNCERTAINTIES, "length") if "sx" in roles.has else None
+    rows = table.quantities(UNCERTAINTIES, "length") if "sx" in roles.has else None
     return Channels(**found, sigma=sigma, sigma_of_rows=rows)
 
 
@@ -314,9 +311,7 @@ def _rotation(table: Table, roles: Roles) -> Array | None:
         q = q / length[:, None]
         vector = None
     elif roles.has & set(ROTATION_VECTOR):
-        vector = np.column_stack(
-            [table.quantity(name, "angle", allow_blank=True) for name in ROTATION_VECTOR]
-        )
+        vector = table.quantities(ROTATION_VECTOR, "angle", allow_blank=True)
         far = np.linalg.norm(vector, axis=1) > 2.0 * np.pi * (1.0 + 1e-6)
         if far.any():
             raise InputError(

@@ -19,6 +19,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.noise_statement import Instrument
+from sk120stiff.measurements.rays import frames_of_rays
 
 FEWEST = 6  # places of the tool from which an instrument's own can be told
 MOST = 60  # of them that are looked at
@@ -130,10 +131,7 @@ def in_axes_of_sight(along: Array, sigma: Array) -> tuple[Array, Array]:
     ray = along[whole] / size[:, None]
     across = np.maximum(0.5 * (variances[whole].sum(axis=1) - size**2), 1e-4 * size**2)
     variances[whole] = np.stack([size**2, across, across], axis=1)
-    least = np.eye(3)[np.abs(ray).argmin(axis=1)]
-    second = np.cross(ray, least)
-    second /= np.linalg.norm(second, axis=1)[:, None]
-    axes[whole] = np.stack([ray, second, np.cross(ray, second)], axis=1)
+    axes[whole] = frames_of_rays(ray)
     return variances, axes
 
 

@@ -42,13 +42,13 @@ def along_rays(channels: Channels, instrument: Instrument) -> Channels:
     sigma = np.full((len(position), 3), max(instrument.along, instrument.across))
     if whole.any():
         ray, along, across = instrument.at(position[whole])
-        rays[whole] = _frames(ray)
+        rays[whole] = frames_of_rays(ray)
         sigma[whole] = np.column_stack([along, across, across])
     sizes = {**channels.sigma, "distance": instrument.along}
     return replace(channels, rays=rays, sigma_of_rows=sigma, sigma=sizes)
 
 
-def _frames(ray: Array) -> Array:
+def frames_of_rays(ray: Array) -> Array:
     """(N, 3, 3) unit vectors as rows: the ray (N, 3) and two across it."""
     least = np.eye(3)[np.abs(ray).argmin(axis=1)]
     first = np.cross(ray, least)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -83,7 +82,8 @@ def read_measurements(
         )
     table = read_table(source)
     settings = read_settings(find_settings(source))
-    return assembled(table, settings, _hash(source, settings.path), actuated, prismatic)
+    both = [source] if settings.path is None else [source, settings.path]
+    return assembled(table, settings, files.sha256_of(*both), actuated, prismatic)
 
 
 def assembled(
@@ -332,14 +332,6 @@ def _robot(text: str | None, folder: Path) -> str | None:
     is_path = any(mark in place for mark in "/\\") or path.suffix.lower() in _ROBOT_FILES
     is_path = is_path or path.exists()
     return str(RobotName(str(path.resolve()), arguments)) if is_path else text
-
-
-def _hash(*paths: Path | None) -> str:
-    digest = hashlib.sha256()
-    for path in paths:
-        if path is not None:
-            digest.update(files.read_bytes(path))
-    return digest.hexdigest()
 
 
 def _doubt_units(measurements: Measurements) -> None:

@@ -61,13 +61,13 @@ def read_rows(
     position = {label: k for k, label in enumerate(dict.fromkeys(pose))}
     wrench = np.zeros((count, 6))
     if FORCES[0] in roles.has:
-        wrench[:, :3] = quantities(table, FORCES, "force")
+        wrench[:, :3] = table.quantities(FORCES, "force")
     if MOMENTS[0] in roles.has:
-        wrench[:, 3:] = quantities(table, MOMENTS, "moment")
+        wrench[:, 3:] = table.quantities(MOMENTS, "moment")
     loaded = np.any(wrench != 0.0, axis=1)
     measured = None
     if roles.measured:
-        measured = quantities(table, roles.measured, "length", allow_blank=True)  # not read
+        measured = table.quantities(roles.measured, "length", allow_blank=True)  # not read
     rows = Rows(
         pose=pose,
         pose_index=np.array([position[label] for label in pose], dtype=np.int64),
@@ -83,13 +83,6 @@ def read_rows(
         use=_flags(table) if "use" in roles.has else np.ones(count, dtype=np.bool_),
     )
     return rows, kinds, spare
-
-
-def quantities(
-    table: Table, names: tuple[str, ...], kind: str, *, allow_blank: bool = False
-) -> Array:
-    """Several columns of one kind side by side (N, k), SI."""
-    return np.column_stack([table.quantity(name, kind, allow_blank=allow_blank) for name in names])
 
 
 def rows_of_one_pose(joints: Array) -> tuple[str, ...]:
@@ -156,7 +149,7 @@ def _branches(table: Table, loaded: Mask) -> tuple[str, ...]:
 
 
 def _uncertainties(table: Table) -> Array:
-    values = quantities(table, UNCERTAINTIES, "length", allow_blank=True)
+    values = table.quantities(UNCERTAINTIES, "length", allow_blank=True)
     if np.any(values < SMALLEST_SIGMA):
         row, column = (int(k) for k in np.argwhere(values < SMALLEST_SIGMA)[0])
         name = UNCERTAINTIES[column]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -88,6 +89,21 @@ class Table:
         known = np.isfinite(values)
         values[known] = units.to_si(values[known], unit, kind, where=self.place(name))
         return values
+
+    def quantities(self, names: Sequence[str], kind: str, *, allow_blank: bool = False) -> Array:
+        """Several columns of one kind side by side (N, k), SI.
+
+        Raises:
+            InputError: As `quantity`, or one of them is missing.
+        """
+        for name in names:
+            if name not in self.headers:
+                raise InputError(
+                    f"the column {name!r} is missing",
+                    where=str(self.path),
+                    remedy=f"There are: {', '.join(self.headers.values())}.",
+                )
+        return np.column_stack([self.quantity(n, kind, allow_blank=allow_blank) for n in names])
 
 
 def read_table(path: Path) -> Table:

@@ -33,7 +33,7 @@ from sk120stiff.effects import (
     ReadingError,
     Weighing,
 )
-from sk120stiff.effects.base import Misreading, Switching
+from sk120stiff.effects.base import Misreading, Moving, Switching
 from sk120stiff.model.misread import misread, rotate, to_sensor
 from sk120stiff.model.standing import Solution, Standing
 from sk120stiff.robot import Mechanism, Robot
@@ -66,7 +66,7 @@ class Assembly:
         virtual = {
             joint.name: joint
             for effect in self.effects
-            if isinstance(effect, Elastic | Geometric | Imposed)
+            if isinstance(effect, Moving)
             for joint in effect.virtual_joints(self.robot)
         }
         rigid = self.robot.mechanism()
@@ -80,28 +80,24 @@ class Assembly:
     @cached_property
     def elastic(self) -> tuple[tuple[Elastic, slice, Index], ...]:
         """What yields, each with its part of the values and the indices of its coordinates."""
-        return tuple(
-            (effect, part, self._indices(effect.coordinates(self.robot)))
-            for effect, part in zip(self.effects, self.slices, strict=True)
-            if isinstance(effect, Elastic)
-        )
+        return tuple((e, part, k) for e, part, k in self._moving if isinstance(e, Elastic))
 
     @cached_property
     def geometric(self) -> tuple[tuple[Geometric, slice, Index], ...]:
         """What shifts the unloaded coordinates, likewise."""
-        return tuple(
-            (effect, part, self._indices(effect.coordinates(self.robot)))
-            for effect, part in zip(self.effects, self.slices, strict=True)
-            if isinstance(effect, Geometric)
-        )
+        return tuple((e, part, k) for e, part, k in self._moving if isinstance(e, Geometric))
 
     @cached_property
     def imposed(self) -> tuple[tuple[Imposed, slice, Index], ...]:
         """What moves coordinates between zero and reading, likewise."""
+        return tuple((e, part, k) for e, part, k in self._moving if isinstance(e, Imposed))
+
+    @cached_property
+    def _moving(self) -> tuple[tuple[Moving, slice, Index], ...]:
         return tuple(
             (effect, part, self._indices(effect.coordinates(self.robot)))
             for effect, part in zip(self.effects, self.slices, strict=True)
-            if isinstance(effect, Imposed)
+            if isinstance(effect, Moving)
         )
 
     def _indices(self, names: Sequence[str]) -> Index:

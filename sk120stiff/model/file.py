@@ -26,11 +26,11 @@ from typing import Any
 
 import numpy as np
 import yaml
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from sk120stiff.effects import CATALOGUE, Catalogue, comment_lines
 from sk120stiff.errors import InputError, warn
-from sk120stiff.files import Vector, parse_yaml, read_text, validated, write_atomically
+from sk120stiff.files import Strict, Vector, parse_yaml, read_text, validated, write_atomically
 from sk120stiff.model.former import translated
 from sk120stiff.model.model import Model
 from sk120stiff.model.parameter import Parameter
@@ -52,11 +52,7 @@ _EFFECT = (
 LIKE = dict.fromkeys(("effects", "name", "where", "parameters"), f"effects: [{_EFFECT}]")
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=True)
-
-
-class _Value(_Strict):
+class _Value(Strict):
     value: float
     unit: str
     std: float | None = None
@@ -64,14 +60,14 @@ class _Value(_Strict):
     origin: str = ""
 
 
-class _Effect(_Strict):
+class _Effect(Strict):
     name: str
     where: str
     reference: ReferenceSection | None = None
     parameters: dict[str, _Value]
 
 
-class _File(_Strict):
+class _File(Strict):
     robot: str
     base_frame: str | None = None
     tool_frame: str | None = None
@@ -220,14 +216,14 @@ def model_from_text(
         place = f"{where}, effect {entry.name}:{entry.where}"
         try:
             kind = catalogue[entry.name]
-            entry.parameters = translated(kind, entry.parameters, place)
-            told = kind.options_of({key: item.unit for key, item in entry.parameters.items()})
+            given = translated(kind, entry.parameters, place)
+            told = kind.options_of({key: item.unit for key, item in given.items()})
             found = catalogue.effect(arm, entry.name, entry.where, told)
             found = with_reference(found, entry.reference)
         except InputError as error:
             raise InputError(error.what, where=place, remedy=error.remedy) from error
-        parameters = [_read(found, spec.name, entry, place) for spec in found.parameters]
-        unknown = set(entry.parameters) - {spec.name for spec in found.parameters}
+        parameters = [_read(found, spec.name, given, place) for spec in found.parameters]
+        unknown = given.keys() - {spec.name for spec in found.parameters}
         if unknown:
             raise InputError(
                 f"unknown parameter {sorted(unknown)[0]!r}",
@@ -305,15 +301,15 @@ def _parsed(text: str, where: str) -> _File:
     return validated(_File, parse_yaml(text, where).content, where, LIKE)
 
 
-def _read(found: Any, name: str, entry: _Effect, place: str) -> Parameter:
+def _read(found: Any, name: str, entries: dict[str, _Value], place: str) -> Parameter:
     spec = next(spec for spec in found.parameters if spec.name == name)
-    if name not in entry.parameters:
+    if name not in entries:
         raise InputError(
             f"the parameter {name!r} is missing",
             where=place,
             remedy=f"Write: {name}: {{value: ..., unit: {spec.unit}}}",
         )
-    given = entry.parameters[name]
+    given = entries[name]
     if not _same_unit(given.unit, spec.unit):
         raise InputError(
             f"the parameter {name!r} is given in {given.unit!r}, not in {spec.unit!r}",

@@ -21,9 +21,10 @@ from typing import Any
 
 import numpy as np
 import yaml
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from sk120stiff.errors import InputError, warn
+from sk120stiff.files import Strict
 from sk120stiff.model.model import Model
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
@@ -31,18 +32,18 @@ DIGITS, FINE = 9, 11  # of sizes, and decimals of correlations
 SAME = 1e-6  # relative difference of two values that were written and read
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+class _Finite(Strict):
+    model_config = ConfigDict(allow_inf_nan=False)
 
 
-class _Parameter(_Strict):
+class _Parameter(_Finite):
     name: str
     value: float
     std: float | None = Field(default=None, ge=0.0)
     unit: str
 
 
-class _Remainder(_Strict):
+class _Remainder(_Finite):
     rms_um: list[float] = Field(min_length=3, max_length=3)
     upper_um: list[float] = Field(min_length=3, max_length=3)
     degrees_of_freedom: list[float] = Field(min_length=3, max_length=3)
@@ -53,7 +54,7 @@ class _Remainder(_Strict):
     significant: bool
 
 
-class UncertaintySection(_Strict):
+class UncertaintySection(_Finite):
     """The section as it stands in a file."""
 
     source: str = ""

@@ -7,7 +7,6 @@ on sums XᵀX and Xᵀy, so a reading is taken in within milliseconds.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -108,11 +107,6 @@ class LinearMap:
         """(N, 3) displacements of the base model, and (N, 3, P) change per typical size [m]."""
         predicted, derivative = self.model.predict_with_sensitivities(load_cases)
         return predicted, derivative * self.scale
-
-    def index(self, ids: Iterable[str]) -> list[int]:
-        """Positions of candidates by ``name:where``."""
-        place = {effect.id: k for k, effect in enumerate(self.effects)}
-        return [place[each] for each in ids if each in place]
 
 
 @dataclass(frozen=True, eq=False)

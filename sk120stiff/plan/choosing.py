@@ -12,7 +12,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.errors import InputError
 from sk120stiff.model import Model
 from sk120stiff.plan.design import Design, d_optimal, random_choice, refuse_count, well_spread
-from sk120stiff.plan.discriminate import rivalry
+from sk120stiff.plan.discriminate import Rivalry, rivalry
 from sk120stiff.plan.pool import Pool, same_pose
 
 DRAWS = 50  # random and well-spread choices that a plan is held against
@@ -116,6 +116,13 @@ def telling(
             )
     rivals = rivalry(model, *between, pool, sigma=sigma, known=known)
     refuse_count(pool.pose, *size)
+    return told_apart(rivals, pool, size, between)
+
+
+def told_apart(
+    rivals: Rivalry, pool: Pool, size: tuple[int, int], between: tuple[Effect, Effect]
+) -> Chosen:
+    """The candidates of a pool that tell two effects apart best; `size` as of `precise`."""
     choice = rivals.best(size[0], pool.pose, size[1])
 
     def gain_over(rows: Sequence[int]) -> float:

@@ -20,13 +20,12 @@ from sk120stiff.identify import why_unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.plan.cell import Cell
-from sk120stiff.plan.choosing import Chosen
+from sk120stiff.plan.choosing import Chosen, told_apart
 from sk120stiff.plan.design import best_design, refuse_count, that_count
-from sk120stiff.plan.discriminate import Rivalry
 from sk120stiff.plan.efforts import poses_held
 from sk120stiff.plan.places import Places
 from sk120stiff.plan.planned import LITTLE, POSES, TOO_LITTLE, Expected, Plan, drivable
-from sk120stiff.plan.pool import Pool, poses_in, same_pose
+from sk120stiff.plan.pool import poses_in, same_pose
 from sk120stiff.plan.positions_pool import (
     PositionsPool,
     labels_of,
@@ -184,7 +183,7 @@ def plan_positions(
         size = count or len(np.unique(rest.pose))
         _refuse_count(rest.pose, size, loads)
         if rivals is not None and between is not None:
-            chosen = _between(rivals.of_candidates(left), rest, (size, loads), between)
+            chosen = told_apart(rivals.of_candidates(left), rest, (size, loads), between)
         else:
             design = best_design(
                 pool.problem.model, wanted, gains[left], before, pool.span, size, rest.pose, loads
@@ -244,20 +243,6 @@ def _refuse_count(pose: Index, count: int, loads: int) -> None:
             remedy="Ask for fewer, or draw more (--candidates).",
         )
     refuse_count(pose, count, loads)
-
-
-def _between(
-    rivals: Rivalry, pool: Pool, size: tuple[int, int], between: tuple[Effect, Effect]
-) -> Chosen:
-    """The candidates that tell two effects apart."""
-    choice = rivals.best(size[0], pool.pose, size[1])
-
-    def gain_over(rows: Sequence[int]) -> float:
-        return choice.after / max(rivals.evidence_of(rows), 1e-12)
-
-    names = (between[0].id, between[1].id)
-    evidence = choice.before, choice.after
-    return Chosen(pool, choice.rows, names, gain_over, evidence=evidence, loads=size[1])
 
 
 def _wanted(pool: PositionsPool, asked: Sequence[str]) -> tuple[tuple[str, ...], dict[str, str]]:

@@ -113,12 +113,8 @@ def read_path(
         rapid = np.array([cell == "1" for cell in table.cells["rapid"]])
     joints = None
     if by_joint:
-        joints = np.column_stack(
-            [
-                _column(table, name, kind)
-                for name, kind in zip(robot.actuated, robot.kinds, strict=True)
-            ]
-        )
+        kinds = zip(robot.actuated, robot.kinds, strict=True)
+        joints = np.hstack([table.quantities((name,), kind) for name, kind in kinds])
     read = [name for name in READ if name in has]
     if by_joint and read:
         warn(
@@ -132,8 +128,8 @@ def read_path(
         return LoadedPath(loads, joints, None, None, table, feed, rapid)
     rotation = None
     if has & set(ANGLES):
-        rotation = np.array([rotation_from_rpy(row) for row in _columns(table, ANGLES, "angle")])
-    position = _columns(table, POSITIONS, "length")
+        rotation = np.array([rotation_from_rpy(row) for row in table.quantities(ANGLES, "angle")])
+    position = table.quantities(POSITIONS, "length")
     if part is not None:
         position = position @ part[:3, :3].T + part[:3, 3]
         rotation = None if rotation is None else part[:3, :3] @ rotation
@@ -161,8 +157,8 @@ def _loads(table: Table, constant: Array | None) -> Array:
         )
     moments = np.zeros((len(table.lines), 3))
     if has & set(MOMENTS):
-        moments = _columns(table, MOMENTS, "moment")
-    return np.column_stack([_columns(table, FORCES, "force"), moments])
+        moments = table.quantities(MOMENTS, "moment")
+    return np.column_stack([table.quantities(FORCES, "force"), moments])
 
 
 def joints_along(
@@ -348,17 +344,3 @@ def write_joints(
         if not np.allclose(read, joints[:, k], rtol=1e-9, atol=1e-9):
             raise RuntimeError(f"{header} is written otherwise than it was meant")
     return write_atomically(target, csv_text(merged.items()))
-
-
-def _columns(table: Table, names: tuple[str, ...], kind: str) -> Array:
-    return np.column_stack([_column(table, name, kind) for name in names])
-
-
-def _column(table: Table, name: str, kind: str) -> Array:
-    if name not in table.headers:
-        raise InputError(
-            f"the column {name!r} is missing",
-            where=str(table.path),
-            remedy=f"There are: {', '.join(table.headers.values())}.",
-        )
-    return table.quantity(name, kind)

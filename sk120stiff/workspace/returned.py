@@ -82,14 +82,7 @@ def read_returned(
     table = read_table(Path(file))
     has = set(table.headers)
     names = ("dx", "dy", "dz") if "dx" in has else ("x", "y", "z")
-    for name in names:
-        if name not in has:
-            raise InputError(
-                f"the column {name!r} is missing",
-                where=str(table.path),
-                remedy="Give x[mm], y[mm], z[mm] as measured, or dx[mm], dy[mm], dz[mm].",
-            )
-    values = np.column_stack([table.quantity(name, "length") for name in names])
+    values = table.quantities(names, "length")
     runs = table.cells.get("run", ("after",) * len(values))
     labels = path.table.cells.get("point") or tuple(str(k + 1) for k in range(path.count))
     where = {label: k for k, label in enumerate(labels)}

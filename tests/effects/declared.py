@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sk120stiff.effects import CATALOGUE, Catalogue, all_effects
-from sk120stiff.effects.base import SPRINGS, Effect, Elastic, Geometric, LinearElastic
+from sk120stiff.effects.base import SPRINGS, AxisByAxis, Effect, Elastic, Geometric
 from sk120stiff.effects.nonlinear import AT, POSITIVE, Nonlinear
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import sample_poses
@@ -55,11 +55,7 @@ def declared_aliases(robot: Robot, catalogue: Catalogue = CATALOGUE) -> tuple[Al
 
 def _about_one_axis(robot: Robot, effects: Sequence[Effect]) -> list[list[str]]:
     """Groups of parameters whose coordinates have parallel unit twists at all poses."""
-    chosen = [
-        e
-        for e in effects
-        if isinstance(e, Geometric) or (isinstance(e, LinearElastic) and e.one_axis_each)
-    ]
+    chosen = [e for e in effects if isinstance(e, Geometric | AxisByAxis)]
     virtual = [joint for e in chosen for joint in e.virtual_joints(robot)]
     rigid = robot.mechanism()
     mechanism = rigid.with_virtual_joints(virtual) if virtual else rigid

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.effects import CATALOGUE, Imposed, LinearElastic, LoadCases, ParameterSpec
+from sk120stiff.effects import CATALOGUE, AxisByAxis, Imposed, LoadCases, ParameterSpec
 from sk120stiff.effects.parameter import compliance
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.anatomy import arm_joint, arm_links
@@ -17,14 +17,13 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class LinkStretch(LinearElastic):
+class LinkStretch(AxisByAxis):
     """A link gets longer under tension."""
 
     name: ClassVar[str] = "link_stretch"
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "stretch = force / K"
     axes: ClassVar[str] = "the line of the link"
-    one_axis_each: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -48,9 +47,6 @@ class LinkStretch(LinearElastic):
         placement[:3, 3] = link.along
         axis = link.along / link.length
         return (VirtualJoint(f"{self.id}.z", link.index, placement, axis, revolute=False),)
-
-    def patterns(self, load_cases: LoadCases) -> Array:
-        return np.ones((1, 1, 1))
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from scipy.stats import multivariate_normal
 from sk120stiff.effects import effect
 from sk120stiff.explain.candidates.form_rows import FormRows
 from sk120stiff.explain.candidates.regression import Regression, price_of_choice
-from sk120stiff.explain.candidates.sums import Sums, solve_columns
+from sk120stiff.explain.candidates.sums import Solved, Sums, solve_sets
 from sk120stiff.explain.select.beam import NEAR, beam_search, exchanged, in_its_place
 from sk120stiff.explain.select.promises import promises
 from sk120stiff.explain.select.score import (
@@ -77,10 +77,14 @@ def test_draws_integrated_out_of_some_columns_are_those_of_all():
     assert not none.sums.gram.any() and sums.marginal(members, 1.5).sums.gram.any()
 
 
+def solved_over(found: Regression, sums: Sums, columns: np.ndarray) -> Solved:
+    return solve_sets(sums, [columns], found.lower, found.plausible).each()[0]
+
+
 def test_free_columns_are_least_squares():
     found = regression()
     pick = np.array([0, 1, 2])
-    solved = solve_columns(found.sums(), pick, found.lower, found.plausible)
+    solved = solved_over(found, found.sums(), pick)
     values, rss, *_ = np.linalg.lstsq(found.X[:, pick], found.y, rcond=None)
     assert np.allclose(solved.values, values, rtol=1e-6)
     assert np.isclose(solved.rss, rss[0], rtol=1e-9)
@@ -101,7 +105,7 @@ def test_an_effect_pays_for_its_sizes_for_looking_and_for_its_law():
 def test_bounded_columns_are_non_negative_least_squares(seed):
     found = regression(seed, lower=0.0)
     pick = np.arange(5)
-    solved = solve_columns(found.sums(), pick, found.lower, found.plausible)
+    solved = solved_over(found, found.sums(), pick)
     values, norm = nnls(found.X[:, pick], found.y)
     assert np.array_equal(solved.columns, np.flatnonzero(values))
     assert np.isclose(solved.rss, norm**2, rtol=1e-6)
@@ -110,7 +114,7 @@ def test_bounded_columns_are_non_negative_least_squares(seed):
 def test_gains_are_the_fall_of_the_misfit():
     found = regression()
     sums = found.sums()
-    base = solve_columns(sums, found.base, found.lower, found.plausible)
+    base = solved_over(found, sums, found.base)
     promised = promises(found, sums, base).most
     for own, promise in zip(found.columns, promised, strict=True):
         grown = np.concatenate([found.base, own])
@@ -298,7 +302,7 @@ def test_every_model_has_its_own_size_of_model_form_error(pick):
     weights = np.ones(POSES)
     weights[0] = 0.0  # as in a fold
     sums = weighed(found, weights)
-    solved = solve_columns(sums, columns, found.lower, found.plausible)
+    solved = solved_over(found, sums, columns)
     rest = (found.y - found.X[:, columns] @ solved.values)[found.group > 0]
     own = np.arange(len(found.y))[found.group > 0] % 3 < 2
     likeliest = min(
@@ -311,7 +315,7 @@ def test_every_model_has_its_own_size_of_model_form_error(pick):
 
 def test_no_model_leaves_less_than_the_noise():
     found = beside_form(1e6)
-    solved = solve_columns(found.sums(), np.arange(5), found.lower, found.plausible)
+    solved = solved_over(found, found.sums(), np.arange(5))
     assert found.form is not None and found.form.noise_share == 1e6
     rows = len(found.form.y)
     left = found.sums().form.left_by(solved)

@@ -23,6 +23,11 @@ def bench() -> Bench:
     return Bench.of("motoman_sk120", poses=40, directions=4)
 
 
+def index(made: Campaign, name: str) -> int:
+    """Position of a candidate ``name:where``."""
+    return [effect.id for effect in made.linear.effects].index(name)
+
+
 def belief_after(
     rows: int, seed: int = 0, truth: str = "link_bending:link_2_l", size: float = 2.0
 ) -> Belief:
@@ -30,7 +35,7 @@ def belief_after(
     made = bench().campaign
     rng = np.random.default_rng(seed)
     X = made.X[rng.choice(len(made.X), rows, replace=False)].reshape(-1, made.X.shape[2])
-    own = made.linear.columns[made.linear.index([truth])[0]]
+    own = made.linear.columns[index(made, truth)]
     y = X[:, own] @ np.full(len(own), size) + rng.normal(size=len(X))
     return Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
 
@@ -55,13 +60,13 @@ def test_the_evidence_is_the_density_of_the_readings() -> None:
     found = {h.members: h.log_weight for h in belief.hypotheses}
     count = len(made.linear.effects)
     for name in ("force_rotation:sensor", "force_crosstalk:sensor"):
-        (e,) = made.linear.index([name])
+        e = index(made, name)
         prior = np.log((1 - NOTHING) * (1 - TWO))
         share = prior - np.log(count)  # but for effects that are met less often
         ours = found[(e,)] - found[()]
         theirs = density(made.linear.columns[e]) + share - nothing
         assert ours == pytest.approx(theirs, abs=0.2)  # what joint_tilt leaves to the others
-    pair = [made.linear.index([n])[0] for n in ("force_rotation:sensor", "force_crosstalk:sensor")]
+    pair = [index(made, n) for n in ("force_rotation:sensor", "force_crosstalk:sensor")]
     difference = found[(pair[0],)] - found[(pair[1],)]
     exact = density(made.linear.columns[pair[0]]) - density(made.linear.columns[pair[1]])
     assert difference == pytest.approx(exact, abs=1e-4)

@@ -138,7 +138,7 @@ def test_two_arms_on_a_torso_are_no_hand() -> None:
     assert choice.tool == "left_link6"
     assert choice.fingers == ()
     assert choice.others == (("right_link6", 9), ("head", 4))
-    assert "right_link6 (9), head (4)" in choice.about_tool
+    assert "right_link6 (9) and head (4)" in choice.about_tool
     assert load_robot(str(robot), tool="right_link6").n == 9
 
 

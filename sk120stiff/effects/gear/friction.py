@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -72,11 +71,6 @@ class FrictionHysteresis(GearEffect, Switching):
             return cls(where, scale_of(robot), cycled, cycled=True)
         jump = HALF in options.shape or not told
         return cls(where, scale_of(robot), (*([0.0] if jump else []), *told))
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The pre-sliding that the names of the parameters tell."""
-        return Options(shape=tuple(parameters))
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -13,6 +13,7 @@ from sk120stiff.effects.base import Elastic, scale_of
 from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
+from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 
@@ -31,12 +32,7 @@ class GearEffect(Elastic):
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
         """Every actuated joint that turns."""
-        slides = dict(zip(robot.actuated, robot.prismatic, strict=True))
-        return tuple(name for name in robot.actuated if not slides[name])
-
-    def coordinates(self, robot: Robot) -> tuple[str, ...]:
-        """The actuated joint itself."""
-        return (self.where,)
+        return USUAL_PLACES["a joint that turns"](robot)
 
     def weight_torque(self, load_cases: LoadCases) -> Array:
         """(N, 1) torque of the arm's weight on the joint, before the load came [N·m]."""

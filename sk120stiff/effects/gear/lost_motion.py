@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
@@ -67,11 +66,6 @@ class LostMotion(GearEffect, Switching):
         sided = any(name.startswith(tuple(heads[1:])) for name in options.shape)
         flanks = (*([0.0] if plain or not told else []), *sorted(told))
         return cls(where, scale_of(robot), flanks, sided)
-
-    @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """The flanks that the names of the parameters tell."""
-        return Options(shape=tuple(parameters))
 
     @property
     def _terms(self) -> tuple[tuple[str, float], ...]:

@@ -12,7 +12,7 @@ from sk120stiff.effects import LoadError, Weighing
 from sk120stiff.explain.absolute.candidates import COMPLIANCE, family
 from sk120stiff.explain.absolute.choose import Chosen, lengths
 from sk120stiff.explain.absolute.linear import Linear
-from sk120stiff.explain.findings import Contender
+from sk120stiff.explain.findings import Contender, Step
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.noise_sizes import wild_beside
 from sk120stiff.identify.absolute.placed_anew import placed_anew
@@ -23,12 +23,9 @@ RIGID = "rigid"  # the model that has no effect
 
 
 @dataclass(frozen=True)
-class GapStep:
-    """The gap with one cause more: rms per axis, fitted and held out, and mean distance [m]."""
+class GapStep(Step):
+    """The gap with one cause more, and the mean distance at poses left out [m]."""
 
-    label: str
-    fit_rms: float
-    heldout_rms: float
     heldout_distance: float
 
 
@@ -171,13 +168,9 @@ def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
     problem = replace(final.problem, measurements=others.masked(), model=final.model)
     gap, kept = problem.channel_gap(final.model.values)[0], ~wild[others.use]
     counted = problem.counted
-    distance = np.nan
-    if "position" in problem.channels.present:
-        held = problem.channels.held("position")
-        full = np.full(held.shape, np.nan)
-        full[held] = gap[problem.channels.kinds[0]]
-        whole = full[held.all(axis=1) & kept]
-        distance = float(np.linalg.norm(whole, axis=1).mean()) if len(whole) else np.nan
+    length = problem.distances(gap)[kept]
+    length = length[np.isfinite(length)]
+    distance = float(length.mean()) if len(length) else np.nan
     return HeldOutFile(
         rms(gap[counted[kept[problem.rows[counted]]]]), distance, wild, rms(gap[counted]), others,
         None if moved is None else moved.sentence(),

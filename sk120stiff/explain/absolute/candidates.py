@@ -13,7 +13,6 @@ from sk120stiff.effects import (
     Catalogue,
     Effect,
     Elastic,
-    Geometric,
     Imposed,
     LinearElastic,
     LoadCases,
@@ -23,6 +22,7 @@ from sk120stiff.effects import (
     load_cases_of,
     referred,
 )
+from sk120stiff.effects.base import Moving
 from sk120stiff.effects.gear import GearHardening, LostMotion
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.absolute.linear import FAINT, Linear
@@ -229,7 +229,7 @@ def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:
     width = 0
     for effect in effects:
         own = 0
-        if isinstance(effect, Elastic | Geometric | Imposed):
+        if isinstance(effect, Moving):
             own = len(effect.virtual_joints(robot))
         if part and width + own > WIDE:
             yield part

@@ -50,16 +50,16 @@ class Gain:
     folds: int
 
 
-def choose(linear: Linear, *, most: int = MOST) -> Chosen:
+def choose(linear: Linear) -> Chosen:
     """Forward by evidence, backward as the picture changes, then confirmed at poses left out.
 
     Each is confirmed as it joins. What only others yet to come would confirm, for they hide it at
     poses left out, is confirmed among all of them in a second search, whose answer counts where it
     explains more.
     """
-    chosen, dropped = _searched(linear, most, at_once=True)
+    chosen, dropped = _searched(linear, at_once=True)
     if dropped:
-        others, fallen = _searched(linear, most, at_once=False)
+        others, fallen = _searched(linear, at_once=False)
         before, after = linear.noise(chosen), linear.noise(others)
         noise = min(before, after)
         gained = linear.score(others, noise) - linear.score(chosen, noise)
@@ -100,16 +100,14 @@ def nothing_named(linear: Linear, found: Chosen) -> Chosen:
     return Chosen((), dropped)
 
 
-def _searched(
-    linear: Linear, most: int, *, at_once: bool
-) -> tuple[tuple[int, ...], dict[int, str]]:
+def _searched(linear: Linear, *, at_once: bool) -> tuple[tuple[int, ...], dict[int, str]]:
     """Candidates that joined and were confirmed, as they joined or all at the end; the others."""
     chosen: tuple[int, ...] = ()
     dropped: dict[int, str] = {}
     least = threshold(linear)
     seen: set[frozenset[int]] = set()
     stuck = False  # what joins one by one is given up again
-    while len(chosen) < most:
+    while len(chosen) < MOST:
         best = _next(linear, chosen, dropped.keys(), at_once=stuck)
         if not best:
             break

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from sk120stiff.explain.answer.document import (
     micrometres,
     parameter_entry,
     share_entries,
+    share_of,
 )
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.explain.findings import sentence_in
@@ -143,10 +143,7 @@ def _effect(
 ) -> dict[str, Any]:
     problem = answer.final.problem
     own = [p for p in answer.final.model.parameters if p.effect == item.effect]
-    share = None
-    for before, step in pairwise(answer.steps):
-        if step.label == f"+ {item.effect.id}":
-            share = before.heldout_rms - step.heldout_rms
+    share = share_of(answer.steps, item.effect)
     return {
         "name": item.effect.name,
         "where": item.effect.where,

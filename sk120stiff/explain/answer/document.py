@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from sk120stiff.effects import Effect
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
-from sk120stiff.explain.findings import Finding, TaskBudget, sentence_in
+from sk120stiff.explain.findings import Finding, Step, TaskBudget, sentence_in
 from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.identify.report import noise_sentence
@@ -166,10 +167,10 @@ def share_entries(shares: Iterable[Share], size: float = 1.0) -> list[dict[str, 
     ]
 
 
-def share_of(answer: Explanation, finding: Finding) -> float | None:
+def share_of(steps: Sequence[Step], effect: Effect) -> float | None:
     """By how much the held-out gap fell when an effect joined alone [m]; None where it did not."""
-    for before, step in pairwise(answer.steps):
-        if step.label == f"+ {finding.effect.id}":
+    for before, step in pairwise(steps):
+        if step.label == f"+ {effect.id}":
             return before.heldout_rms - step.heldout_rms
     return None
 
@@ -204,7 +205,7 @@ def _effect(answer: Explanation, finding: Finding) -> dict[str, Any]:
         "alternatives": list(finding.alternatives),
         "exact_aliases": list(finding.exact),
         "probability": finding.probability,
-        "share_um": micrometres(share_of(answer, finding)),
+        "share_um": micrometres(share_of(answer.steps, finding.effect)),
         "parameters": [parameter_entry(p, unseen.get(p.name), ends.get(p.name)) for p in found],
         "size": None if whole is None else asdict(whole),
         "sentence": sentence_in(answer.final.model, finding.effect),

@@ -192,11 +192,6 @@ class Solutions:
         return [Solved(columns[moves], v[moves], rss) for columns, moves, v, rss in rows]
 
 
-def solve_columns(sums: Sums, columns: Index, lower: Array, plausible: Array) -> Solved:
-    """Least squares over one set of columns, see `solve_sets`."""
-    return solve_sets(sums, [columns], lower, plausible).each()[0]
-
-
 def solve_sets(sums: Sums, sets: Sequence[Index], lower: Array, plausible: Array) -> Solutions:
     """Least squares over sets of columns with non-negative values where `lower` is zero.
 

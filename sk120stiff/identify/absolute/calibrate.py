@@ -24,7 +24,7 @@ from sk120stiff.identify.absolute.noise_sizes import (
     of_poses,
     wild_beside,
 )
-from sk120stiff.identify.absolute.pose_problem import PoseProblem, row_lengths
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.refusals import (
     nowhere,
     refuse_a_wrong_end,
@@ -111,7 +111,9 @@ class Calibration(Fit):
     @property
     def distances(self) -> Array:
         """(K,) length of the gap at every row with a whole position [m]."""
-        return row_lengths(self.problem, self.x)
+        problem = self.problem
+        length = problem.distances(problem.channel_gap(problem.values(self.x))[0])
+        return np.asarray(length[np.isfinite(length)])
 
 
 def calibrate(

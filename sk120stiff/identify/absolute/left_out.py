@@ -48,16 +48,26 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
     moving = ~found.at_bound
     left = found.residual / found.unit
     drawn = 1.0 / problem.prior[moving] ** 2
-    here, alone = posterior(kept[:, moving], drawn, left)
-    every = np.column_stack([kept[:, moving], more])
-    there, beside = posterior(every, np.concatenate([drawn, np.ones(more.shape[1])]), left)
-    moved = there[: len(here)] - here
     error = np.zeros(len(found.x))
-    error[moving] = np.sqrt(np.maximum(beside[: len(alone)] - alone, 0.0) + moved**2)
+    error[moving] = np.sqrt(widened_by(more, kept[:, moving], drawn, left))
     return with_values(replace(found, left_out=np.where(counted, 0.0, error)))
 
 
-def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
+def widened_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
+    """(P,) variance and square of the move that further parameters of unit size bring to others.
+
+    Args:
+        more: (M, k) derivative by them.
+        kept, prior, left: As of `_posterior`, of the others.
+    """
+    here, alone = _posterior(kept, prior, left)
+    both = np.concatenate([prior, np.ones(more.shape[1])])
+    there, beside = _posterior(np.column_stack([kept, more]), both, left)
+    count = len(here)
+    return np.asarray(np.maximum(beside[:count] - alone, 0.0) + (there[:count] - here) ** 2)
+
+
+def _posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
     """(P,) step to the best values, and variance, from derivative (M, P), prior (P,) and gap (M,).
 
     The prior's own pull counts in neither: two steps are compared. Of what the numbers cannot see

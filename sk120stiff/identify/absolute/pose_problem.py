@@ -257,21 +257,17 @@ class PoseProblem(Problem):
         """(L,) measured minus predicted of all channels that are lengths [m]."""
         return self.channel_gap(self.values(x))[0][self.lengths]
 
+    def distances(self, gap: Array) -> Array:
+        """(N,) length of a gap (M,) at every row [m]; NaN of one without a whole position."""
+        if "position" not in self.channels.present:
+            return np.full(self.channels.count, np.nan)
+        held = self.channels.held("position")
+        full = np.full(held.shape, np.nan)
+        full[held] = gap[self.channels.kinds[0]]
+        return np.asarray(np.linalg.norm(full, axis=1))
+
     def evaluate(self, x: Array) -> tuple[Array, Array]:
         """Whitened gap (M,) and its derivative (M, P_free) by `x`."""
         gap, slope = self.channel_gap(self.values(x), derivative=True)
         white = self.of_channels.apply
         return white(gap), -white(slope[:, self.free] * self.scale)
-
-
-def row_lengths(problem: PoseProblem, x: Array) -> Array:
-    """(K,) length of the gap at every row with a whole position [m]."""
-    position = problem.channels.position
-    if position is None or "position" not in problem.channels.present:
-        return np.zeros(0)
-    gap = problem.channel_gap(problem.values(x))[0]
-    held = problem.channels.held("position")
-    full = np.full(position.shape, np.nan)
-    full[held] = gap[problem.channels.kinds[0]]
-    length = np.linalg.norm(full, axis=1)
-    return np.asarray(length[np.isfinite(length)])

@@ -23,6 +23,7 @@ from sk120stiff.errors import InputError, listed, two_digits
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.repeated import cells_of_numbers
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.uncertainty.laid_out import seen_directions
 from sk120stiff.measurements import Measurements
 
 HALF = 0.5  # of the square of what is left, below which a push must bring it
@@ -271,8 +272,6 @@ class _Fitted:
 
 def _fall(b: Array, S: Array) -> float:
     """bᵀ S⁻¹ b along what S shows."""
-    size = np.sqrt(np.maximum(np.diag(S), 1e-300))
-    values, vectors = np.linalg.eigh(S / np.outer(size, size))
-    told = values > 1e-8
-    along = vectors[:, told].T @ (b / size)
-    return float(along**2 @ (1.0 / values[told]))
+    size, values, vectors = seen_directions(S, 1e-8)
+    along = vectors.T @ (b / size)
+    return float(along**2 @ (1.0 / values))

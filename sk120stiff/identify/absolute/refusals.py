@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.absolute.noise_sizes import START, of_poses
-from sk120stiff.identify.absolute.pose_problem import row_lengths
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import Placing
@@ -67,8 +67,8 @@ def refuse_a_wrong_end(found: Fit, placed: Placing, readings: Measurements) -> N
     Raises:
         Refusal: It went astray.
     """
-    lengths = row_lengths(of_poses(found), found.x)
-    left = float(np.sqrt(np.mean(lengths**2))) if len(lengths) else 0.0
+    problem = of_poses(found)
+    left = rms(problem.distances(problem.channel_gap(problem.values(found.x))[0]))
     reach = arm_length(found.model.robot)
     if left > max(ASTRAY * max(placed.rms, START["position"]), LARGEST * reach):
         raise Refusal(

@@ -16,7 +16,8 @@ from scipy.special import logsumexp
 from sk120stiff.arrays import Array, lengths_of
 from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.effects.options import Options
-from sk120stiff.identify.absolute.left_out import COUNTED, posterior
+from sk120stiff.identify.absolute.left_out import COUNTED, widened_by
+from sk120stiff.identify.absolute.noise_sizes import of_poses
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.written import with_values
@@ -28,31 +29,33 @@ LEAST = 1e-3  # probability of waves below which they are not looked at
 
 def waves_that_show(found: Fit, catalogue: Catalogue) -> tuple[Effect, ...]:
     """Transmission errors that the BIC asks for, one after the other, beside a fitted model."""
-    model, kind = found.model, catalogue["transmission_error"]
-    present = {effect.id for effect in model.effects}
-    every = (kind.at(model.robot, where, Options()) for where in kind.places(model.robot))
-    effects = [effect for effect in every if effect.id not in present]
+    effects = _further(found, catalogue)
     if not effects:
         return ()
-    blocks = columns_of(found, effects)
+    white = _slopes(found, effects)
+    Q = np.asarray(np.linalg.qr(found.jacobian)[0])
+    white = white - Q @ (Q.T @ white)  # beside what the fit estimates already
+    ends = np.cumsum([len(effect.parameters) for effect in effects])
+    blocks = np.split(white, ends[:-1], axis=1)
     picked = _forward(blocks, found.residual, len(found.x))
     return tuple(effects[k] for k in picked)
 
 
-def columns_of(found: Fit, effects: Sequence[Effect]) -> list[Array]:
-    """(M, p) whitened derivatives by further effects, beside what the fit estimates already."""
-    problem = found.problem
-    if not isinstance(problem, PoseProblem):
-        raise TypeError("a fit of poses")
-    wider = found.model
+def _further(found: Fit, catalogue: Catalogue) -> list[Effect]:
+    """The waves that a model has not."""
+    robot, kind = found.model.robot, catalogue["transmission_error"]
+    present = {effect.id for effect in found.model.effects}
+    every = (kind.at(robot, where, Options()) for where in kind.places(robot))
+    return [effect for effect in every if effect.id not in present]
+
+
+def _slopes(found: Fit, effects: Sequence[Effect]) -> Array:
+    """(M, p) whitened derivative by further effects."""
+    problem, wider = of_poses(found), found.model
     for effect in effects:
         wider = wider + effect
     slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-    white = problem.of_channels.apply(slope[:, len(found.model.parameters) :])
-    Q = np.asarray(np.linalg.qr(found.jacobian)[0])
-    white = white - Q @ (Q.T @ white)
-    ends = np.cumsum([len(effect.parameters) for effect in effects])
-    return np.split(white, ends[:-1], axis=1)
+    return problem.of_channels.apply(slope[:, len(found.model.parameters) :])
 
 
 def _forward(blocks: list[Array], residual: Array, spent: int) -> list[int]:
@@ -88,18 +91,11 @@ def beside_waves(found: Fit, catalogue: Catalogue) -> Fit:
     problem = found.problem
     if not isinstance(problem, PoseProblem) or not np.isfinite(found.unit):
         return found
-    model, kind = found.model, catalogue["transmission_error"]
-    present = {effect.id for effect in model.effects}
-    every = [kind.at(model.robot, where, Options()) for where in kind.places(model.robot)]
-    effects = [effect for effect in every if effect.id not in present]
+    effects = _further(found, catalogue)
     counted = np.array([isinstance(p.effect, COUNTED) for p in found.parameters])
     if not effects or counted.all():
         return found
-    wider = model
-    for effect in effects:
-        wider = wider + effect
-    slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-    more = problem.of_channels.apply(slope[:, len(model.parameters) :])
+    more = _slopes(found, effects)
     more *= [spec.typical for effect in effects for spec in effect.parameters]
     moving = ~found.at_bound
     kept, left = -found.jacobian[:, moving], found.residual
@@ -108,11 +104,7 @@ def beside_waves(found: Fit, catalogue: Catalogue) -> Fit:
         return found
     drawn = 1.0 / problem.prior[moving] ** 2
     per = 1.0 / found.unit
-    here, alone = posterior(per * kept, drawn, per * left)
-    both = per * np.column_stack([kept, more])
-    there, beside = posterior(both, np.concatenate([drawn, np.ones(more.shape[1])]), per * left)
-    count = len(here)
-    widened = np.maximum(beside[:count] - alone, 0.0) + (there[:count] - here) ** 2
+    widened = widened_by(per * more, per * kept, drawn, per * left)
     variance = np.zeros(len(found.x))
     variance[moving] = likely * widened
     known = np.zeros(len(found.x)) if found.left_out is None else found.left_out

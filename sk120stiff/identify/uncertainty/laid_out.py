@@ -94,9 +94,9 @@ def orthonormal_parameters(information: Array) -> Array:
     return np.asarray(vectors / np.sqrt(values) / scale[:, None])
 
 
-def seen_directions(information: Array) -> tuple[Array, Array, Array]:
+def seen_directions(information: Array, least: float = 1e-10) -> tuple[Array, Array, Array]:
     """Scale (p,) of parameters, and eigenvalues (k,) and vectors (p, k) of what is seen of them."""
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
-    seen = values > 1e-10
+    seen = values > least
     return scale, values[seen], vectors[:, seen]

@@ -13,13 +13,12 @@ from sk120stiff.model import CALIBRATED
 
 
 def profile_intervals(
-    fit: Fit, level: float = 0.95, *, progress: Callable[[int, int], None] | None = None
+    fit: Fit, *, progress: Callable[[int, int], None] | None = None
 ) -> tuple[tuple[float, float], ...]:
-    """Confidence intervals of the public values, one (low, high) per estimated parameter.
+    """95 % confidence intervals of the public values, one (low, high) per estimated parameter.
 
     Args:
         fit: A converged fit.
-        level: Confidence.
         progress: Called as ``progress(done, total)``.
 
     Notes:
@@ -29,7 +28,7 @@ def profile_intervals(
     """
     problem = fit.problem
     lower, upper = problem.bounds
-    goal = fit.reach(level) * fit.unit
+    goal = fit.reach() * fit.unit
     variance = np.diag(covariance_of(fit.jacobian, fit.at_bound, problem.span))
     valley = Valley(
         evaluate=problem.evaluate,
@@ -41,7 +40,7 @@ def profile_intervals(
         std=np.sqrt(variance),
         slopes=np.linalg.norm(fit.jacobian, axis=0),
     )
-    found, linear = [], fit.intervals(level)
+    found, linear = [], fit.intervals()
     for k, parameter in enumerate(fit.parameters):
         ends = (float(lower[k]), float(upper[k]))
         if parameter.origin == CALIBRATED or not np.isfinite(variance[k]):

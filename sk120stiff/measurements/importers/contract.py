@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Literal, NamedTuple, Protocol
@@ -108,6 +108,10 @@ class Column:
     factor: float = 1.0
     file: Path | None = None
 
+    def rows(self, picked: Sequence[int]) -> Column:
+        """Some of its cells."""
+        return replace(self, cells=tuple(self.cells[k] for k in picked))
+
 
 @dataclass(frozen=True)
 class Sheet:
@@ -155,6 +159,16 @@ class Sheet:
     def has(self, *meanings: str) -> bool:
         """Are all of them there?"""
         return all(self.get(meaning) is not None for meaning in meanings)
+
+    def rows(self, picked: Sequence[int]) -> Sheet:
+        """Some of the readings."""
+        return replace(
+            self,
+            columns=tuple(column.rows(picked) for column in self.columns),
+            spare=tuple(column.rows(picked) for column in self.spare),
+            lines=tuple(self.lines[k] for k in picked),
+            rank=tuple(self.rank[k] for k in picked) if self.rank else (),
+        )
 
     def place(self, column: Column, row: int | None = None) -> str:
         """File, line and column for a message."""

@@ -35,12 +35,12 @@ def held_orientations(
         The cells, empty without orientations in numbers, and what is to be said.
     """
     columns = orientation_columns(sheet)
-    values = _numbers(columns)
+    values = numbers_of(columns)
     if values is None:
         return {}, []
     units = {column.unit or joint_unit or "" for column in columns}
     period = PERIODS.get(units.pop()) if len(units) == 1 else None
-    good = _good(values)
+    good = are_orientations(values)
     out, middle = [], 0
     for rows in holds:
         seen = rows[good[rows]]
@@ -80,7 +80,7 @@ def _middle(values: Array, own: Array, period: float | None) -> Array | None:
     return None if spread.max() > NEAR / (2.0 * np.pi) * period else np.asarray(own + mid)
 
 
-def _good(values: Array) -> Mask:
+def are_orientations(values: Array) -> Mask:
     """(N,) rows that hold an orientation."""
     good: Mask = np.asarray(np.isfinite(values).all(axis=1))
     if values.shape[1] == QUATERNION:
@@ -90,7 +90,7 @@ def _good(values: Array) -> Mask:
     return good
 
 
-def _numbers(columns: Sequence[Column]) -> Array | None:
+def numbers_of(columns: Sequence[Column]) -> Array | None:
     """(N, k), NaN where a cell is blank; None without columns, or where a cell is a word."""
     try:
         cells = [[float(cell or "nan") for cell in column.cells] for column in columns]

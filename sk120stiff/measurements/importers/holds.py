@@ -176,8 +176,7 @@ def one_reading_each(draft: Draft, holds: Holds, notes: Sequence[str]) -> Sheet:
         if column.meaning in turned:
             return replace(column, cells=turned[column.meaning])
         if column.meaning not in medians:
-            column = averaged(column)
-            return replace(column, cells=tuple(column.cells[k] for k in middle))
+            return averaged(column).rows(middle)
         values = np.array([float(cell) for cell in column.cells])
         cells = tuple(f"{np.median(values[run]):.12g}" for run in still)
         return replace(column, cells=cells)
@@ -187,11 +186,9 @@ def one_reading_each(draft: Draft, holds: Holds, notes: Sequence[str]) -> Sheet:
         q = draft.joints.values[middle]
         columns = (*columns, Column("standstill", "pose", None, "", near_poses(q)))
     return replace(
-        sheet,
+        sheet.rows(middle),
         columns=columns,
         spare=tuple(map(cut, sheet.spare)),
-        lines=tuple(sheet.lines[k] for k in middle),
-        rank=tuple(sheet.rank[k] for k in middle) if sheet.rank else (),
         notes=(*sheet.notes, *notes, *told),
     )
 

@@ -90,7 +90,7 @@ def with_masses_of_all(sheets: Sequence[Sheet]) -> list[Sheet]:
     lost = [sheet for sheet in out if not _of_loads(sheet)]
     if lost:
         first, like = hung[0].path.name, lost[0].path.name
-        rest = _some([sheet.path.name for sheet in lost])
+        rest = listed([sheet.path.name for sheet in lost], most=SHOWN)
         if left := _left(lost):
             rest += f"; not taken is {left[0][0]!r} in {left[0][1]}, as {left[0][2]}"
         raise InputError(
@@ -117,11 +117,12 @@ def say_masses(sheets: Sequence[Sheet]) -> list[str]:
             for (stated, mass), names in sorted(kinds.items(), key=lambda item: _number(item[0][1]))
             if stated == where
         ]
+        some = listed(each, most=SHOWN)
         out.append(
-            f"What hung on the tool is taken from {where}, for all rows of a file: {_some(each)}. "
+            f"What hung on the tool is taken from {where}, for all rows of a file: {some}. "
             f"If it was another mass, say {OPTION} 'FILE=5 kg'."
             if where != OPTION
-            else f"What hung on the tool is as told: {_some(each)}."
+            else f"What hung on the tool is as told: {some}."
         )
     return out
 
@@ -133,9 +134,9 @@ def doubts_of_names(sheets: Sequence[Sheet]) -> list[str]:
     if left := _left(sheets):
         words = [f"{words!r} in {where} ({why})" for words, where, why in left]
         out.append(
-            f"Not taken for what hung on the tool: {_some(words)}. If it hung there, say so: "
-            f"{OPTION} '5 kg', of one file of several {OPTION} 'FILE=5 kg'; {OPTION} '0 kg' says "
-            "that nothing did."
+            f"Not taken for what hung on the tool: {listed(words, most=SHOWN)}. If it hung there, "
+            f"say so: {OPTION} '5 kg', of one file of several {OPTION} 'FILE=5 kg'; {OPTION} "
+            "'0 kg' says that nothing did."
         )
     named = {
         text: sheet.path.name
@@ -146,9 +147,9 @@ def doubts_of_names(sheets: Sequence[Sheet]) -> list[str]:
     if named:
         words = [f"{text} ({name})" for text, name in named.items()]
         out.append(
-            f"Names of the files say {_some(words)}: forces whose direction they do not say, and "
-            "nothing is taken of them. Write columns fx[N], fy[N], fz[N] into each file (axes of "
-            "the base; a weight is a negative fz), or say which mass hung there: "
+            f"Names of the files say {listed(words, most=SHOWN)}: forces whose direction they do "
+            "not say, and nothing is taken of them. Write columns fx[N], fy[N], fz[N] into each "
+            "file (axes of the base; a weight is a negative fz), or say which mass hung there: "
             f"{OPTION} 'FILE=5 kg'."
         )
     return out
@@ -185,7 +186,7 @@ def refuse_other_files(paths: Sequence[Path], told: Told) -> None:
             raise InputError(
                 f"a mass is told of {name!r}, and no file is called that{meant(name, names)}",
                 where=OPTION,
-                remedy=f"The files are {_some([path.name for path in paths])}.",
+                remedy=f"The files are {listed([path.name for path in paths], most=SHOWN)}.",
             )
 
 
@@ -235,11 +236,6 @@ def _told_mass(sheet: Sheet) -> str:
 
 def _number(text: str) -> float:
     return float(text.removesuffix(" kg"))
-
-
-def _some(words: Sequence[str]) -> str:
-    more = len(words) - SHOWN
-    return listed([*words[:SHOWN], f"{more} more"] if more > 0 else list(words))
 
 
 def _refuse_several(sheet: Sheet, said: dict[float, list[Place]]) -> None:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError, listed
+from sk120stiff.errors import InputError, listed, meant
 from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.told import Told, quantity, texts, unit_of
@@ -89,10 +88,8 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
     names = [unit_of_header(c.header)[0] for c in (*numbered.values(), *sheet.spare)]
     for k, joint in enumerate(actuated, start):
         if k not in numbered:
-            close = get_close_matches(joint, names, n=1)
-            meant = f" (is it {close[0]!r}?)" if close else ""
             raise InputError(
-                f"the joint {joint!r} has no column 'q{k}'{meant}",
+                f"the joint {joint!r} has no column 'q{k}'{meant(joint, names)}",
                 where=str(sheet.path),
                 remedy="Name the columns as the joints, or q1, q2, ..., or give their names with "
                 f"--joints. {robot}",
@@ -138,10 +135,8 @@ def _refuse_count(told: tuple[str, ...], actuated: tuple[str, ...]) -> None:
 
 def _no_column(sheet: Sheet, name: str, joint: str) -> InputError:
     names = [unit_of_header(c.header)[0] for c in (*sheet.columns, *sheet.spare)]
-    close = get_close_matches(name, names, n=1)
-    meant = f" (is it {close[0]!r}?)" if close else ""
     return InputError(
-        f"the joint {joint!r} has no column {name!r}{meant}",
+        f"the joint {joint!r} has no column {name!r}{meant(name, names)}",
         where=str(sheet.path),
         remedy=f"Columns are {', '.join(names)}; numbered joints are also q1, q2, ...",
     )

@@ -39,11 +39,7 @@ def without_lost(sheet: Sheet) -> Sheet:
         return sheet
     kept = [row for row in range(len(sheet.lines)) if row not in lost]
     return replace(
-        sheet,
-        columns=tuple(replace(c, cells=tuple(c.cells[k] for k in kept)) for c in sheet.columns),
-        spare=tuple(replace(c, cells=tuple(c.cells[k] for k in kept)) for c in sheet.spare),
-        lines=tuple(sheet.lines[k] for k in kept),
-        rank=tuple(sheet.rank[k] for k in kept) if sheet.rank else (),
+        sheet.rows(kept),
         skipped=tuple(sorted((*sheet.skipped, *((sheet.lines[k], w) for k, w in lost.items())))),
     )
 

@@ -15,20 +15,23 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sk120stiff import units
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.contract import Column
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.frames import stood_of
+from sk120stiff.measurements.importers.held_orientations import (
+    MATRIX,
+    are_orientations,
+    numbers_of,
+)
 from sk120stiff.measurements.importers.orientation_columns import orientation_columns
 from sk120stiff.measurements.importers.told import Mode, Told, plain
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.measurements.turned import COMPUTED, FITS, mounting
 from sk120stiff.robot import Robot
 
-MATRIX = 9  # numbers
 FEWEST = 6  # orientations that tell how they are meant
-UNIT = 0.01  # by which the length of a quaternion or a determinant may differ from 1
 SAME = 1e-6  # rad; ways that differ by less at every pose are one
 APART = 5.0  # times farther off the arm the next way of reading them has to be
 KNOWN = {
@@ -85,15 +88,11 @@ def understood(
         return "how far the point went is all that is used"
     if fitted is None or len(rows) < FEWEST:
         return f"fewer than {FEWEST} placed poses do not tell how they are meant"
-    values = _numbers(columns)
+    values = numbers_of(columns)
     if values is None:
         return "not all cells are numbers"
-    whole: Mask = np.asarray(np.isfinite(values).all(axis=1))
-    if len(columns) == len(QUATERNION):  # what was not seen is often written as zeros
-        whole &= np.abs(np.linalg.norm(values, axis=1) - 1.0) < UNIT
-    elif len(columns) == MATRIX:
-        whole &= np.abs(np.linalg.det(np.nan_to_num(values).reshape(-1, 3, 3)) - 1.0) < UNIT
-    else:
+    whole = are_orientations(values)
+    if len(columns) not in (len(QUATERNION), MATRIX):
         unit = _unit(draft, columns, told)
         if unit is None:
             return "their unit is not stated (--angle)"
@@ -154,14 +153,6 @@ def with_orientation(
 
 def _same(one: Rotation, other: Rotation) -> bool:
     return float((one.inv() * other).magnitude().max()) < SAME
-
-
-def _numbers(columns: Sequence[Column]) -> Array | None:
-    """(N, k), NaN where a cell is blank; None where one is neither."""
-    try:
-        return np.array([[float(cell or "nan") for cell in c.cells] for c in columns]).T
-    except ValueError:
-        return None
 
 
 def _unit(draft: Draft, columns: Sequence[Column], told: Told) -> str | None:

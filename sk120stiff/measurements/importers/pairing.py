@@ -67,13 +67,12 @@ def paired(points: Sheet, other: Sheet, what: str) -> Sheet:
     more = [replace(c, file=other.path) for c in other.columns if c.meaning not in taken]
     told = taken - {"name"}
     twice = [c for c in other.columns if c.meaning in told and (c is not theirs or how == "order")]
-    spare = tuple(replace(c, file=other.path) for c in other.spare)
+    spare = [replace(c, file=other.path) for c in other.spare]
+    kept = points.rows(rows)
     return replace(
-        points,
-        columns=(*_rows_of(points.columns, rows), *_rows_of(tuple(more), others)),
-        spare=(*_rows_of(points.spare, rows), *_rows_of(spare, others)),
-        lines=tuple(points.lines[k] for k in rows),
-        rank=tuple(points.rank[k] for k in rows),
+        kept,
+        columns=(*kept.columns, *(column.rows(others) for column in more)),
+        spare=(*kept.spare, *(column.rows(others) for column in spare)),
         skipped=tuple(lost),
         unused=(
             *points.unused,
@@ -93,7 +92,3 @@ def label_of(sheet: Sheet) -> Column | None:
     """The column of names, else that of poses if every row has one."""
     pose = sheet.get("pose")
     return sheet.get("name") or (pose if pose is not None and all(pose.cells) else None)
-
-
-def _rows_of(columns: tuple[Column, ...], rows: list[int]) -> tuple[Column, ...]:
-    return tuple(replace(c, cells=tuple(c.cells[k] for k in rows)) for c in columns)

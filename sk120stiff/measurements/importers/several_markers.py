@@ -40,19 +40,9 @@ def of_marker(sheet: Sheet, name: str | None) -> Sheet:
             where=sheet.place(column),
             remedy=f"There are {listed(_names(column.cells))}.",
         )
-
-    def own(values: tuple[str, ...]) -> tuple[str, ...]:
-        return tuple(values[k] for k in rows)
-
-    return replace(
-        sheet,
-        columns=tuple(replace(c, cells=own(c.cells)) for c in sheet.columns if c is not column),
-        spare=tuple(replace(c, cells=own(c.cells)) for c in sheet.spare),
-        lines=tuple(sheet.lines[k] for k in rows),
-        rank=tuple(sheet.rank[k] for k in rows) if sheet.rank else (),
-        notes=(*sheet.notes, f"Marker {name} is read."),
-        marker=name,
-    )
+    others = tuple(c for c in sheet.columns if c is not column)
+    notes = (*sheet.notes, f"Marker {name} is read.")
+    return replace(sheet, columns=others, notes=notes, marker=name).rows(rows)
 
 
 def with_places(draft: Draft, told: Told) -> Draft:

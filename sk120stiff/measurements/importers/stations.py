@@ -254,10 +254,9 @@ def _why_one(draft: Draft, names: dict[str, str], few: list[str], sag: float) ->
     one = f"The tracker is taken to have stood in one place for all {len(names)}: "
     masses = "" if draft.loads.taken else f" If masses differed, say them: {OPTION} 'FILE=5 kg'."
     if few:
-        shown = [*few[:SHOWN], *([f"{len(few) - SHOWN} more"] if len(few) > SHOWN else [])]
         return [
-            f"{one}fewer than {FEWEST} poses, as of {listed(shown)}, tell no frame of their own."
-            f"{masses}"
+            f"{one}fewer than {FEWEST} poses, as of {listed(few, most=SHOWN)}, tell no frame of "
+            f"their own.{masses}"
         ]
     if not sag:
         return []

@@ -181,19 +181,6 @@ class Tree:
             out[k] += T.rotation @ inertia.inertia @ T.rotation.T - inertia.mass * off @ off
         return out
 
-    def jacobian(self, q: Array, frame: str, point: Array) -> Array:
-        """(6, m) Pinocchio's own Jacobian of a point of a frame, root axes: the second road."""
-        joint, T_body_frame = self.body(frame)
-        if joint < 0:
-            return np.zeros((6, self.m))
-        pin.computeJointJacobians(self._model, self._data, self.configuration(q))
-        columns = np.array(
-            pin.getJointJacobian(self._model, self._data, joint + 1, pin.LOCAL_WORLD_ALIGNED)
-        ).reshape(6, self.m)
-        arm = T_body_frame[:3, :3] @ np.asarray(point, dtype=float) + T_body_frame[:3, 3]
-        columns[:3] -= crossed(self._data.oMi[joint + 1].rotation @ arm) @ columns[3:]
-        return columns
-
     def gravity_torques(self, q: Array, gravity: Array) -> Array:
         """(m,) torques by which gravity drives the joints [N·m or N]: minus the holding torques.
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import listed
 from sk120stiff.robot.urdf.document import Finding, JointSpec, UrdfDocument
 from sk120stiff.robot.urdf.findings import at
 from sk120stiff.robot.urdf.hands import FINGER, finger_joints
@@ -69,9 +70,9 @@ class FrameChoice:
         text = f"({self.why_tool})"
         if self.others:
             ends = [f"{name} ({motors})" for name, motors in self.others]
-            text += f"; the robot ends also at {_few(ends)}"
+            text += f"; the robot ends also at {listed(ends, most=_MOST_NAMED)}"
         if self.beside:
-            text += f"; also on this body: {_few(self.beside)}"
+            text += f"; also on this body: {listed(self.beside, most=_MOST_NAMED)}"
         return text
 
     @property
@@ -80,7 +81,7 @@ class FrameChoice:
         told = [f"base frame {self.base!r}: {self.why_base}"]
         told.append(f"tool frame {self.tool!r} {self.about_tool}")
         if self.fingers:
-            told.append(f"held still as fingers: {_few(self.fingers)}")
+            told.append(f"held still as fingers: {listed(self.fingers, most=_MOST_NAMED)}")
         return tuple(told)
 
 
@@ -91,7 +92,7 @@ def fingers_on_way(
     on_way = [joint for joint in document.way(base, tool) if joint.name in choice.fingers]
     if not on_way:
         return ()
-    names = _few([joint.name for joint in on_way])
+    names = listed([joint.name for joint in on_way], most=_MOST_NAMED)
     return (
         Finding(
             "fingers_on_way",
@@ -157,11 +158,6 @@ def _why(tool: str, end: _End) -> str:
         return "no joint moves"
     named = "its name says so" if _rank(tool) < len(_TOOL_NAMES) else "the frame farthest out"
     return f"{named}, behind {len(end.motors)} joint" + "s" * (len(end.motors) > 1)
-
-
-def _few(names: Sequence[str]) -> str:
-    rest = len(names) - _MOST_NAMED
-    return ", ".join(names[:_MOST_NAMED]) + (f" and {rest} more" if rest > 0 else "")
 
 
 def _rank(link: str) -> int:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
+COLUMNS = 3  # of panels
 Dash = Literal["-", "--", ":", "-."]
 _DASHES: tuple[Dash, ...] = ("--", ":", "-.")  # of earlier models
 _MARKERS = ("o", "s", "^")
@@ -57,9 +58,7 @@ class LoadCurve:
             )
 
 
-def force_deflection(
-    curves: Sequence[LoadCurve], *, columns: int = 3, title: str | None = None
-) -> Figure:
+def force_deflection(curves: Sequence[LoadCurve]) -> Figure:
     """Displacement of the point over the size of the load, one panel per pose.
 
     Marker shapes are the base axes, which the lines are named by too; colours and line styles are
@@ -67,7 +66,7 @@ def force_deflection(
     """
     if not curves:
         raise InputError("no pose to draw")
-    columns = min(columns, len(curves))
+    columns = min(COLUMNS, len(curves))
     rows = -(-len(curves) // columns)
     with styled():
         figure, axes = subplots(rows, columns, height=0.65 + 2.45 * rows, sharex=False)
@@ -83,8 +82,6 @@ def force_deflection(
         figure.legend(
             handles=_key(names, measured), loc="outside lower center", ncols=3 + len(names) + 1
         )
-        if title:
-            figure.suptitle(title, x=0.01, ha="left")
     return figure
 
 

@@ -32,7 +32,6 @@ def gap_per_pose(
     gaps: Mapping[str, ArrayLike],
     *,
     noise_floor: float | None = None,
-    title: str | None = None,
 ) -> Figure:
     """Root-mean-square gap of each pose, one bar per model.
 
@@ -67,8 +66,6 @@ def gap_per_pose(
         panel.grid(visible=False, axis="x")
         panel.margins(y=0.14)
         figure.legend(loc="outside lower center", ncols=4)
-        if title:
-            panel.set_title(title)
     return figure
 
 
@@ -76,7 +73,6 @@ def gap_waterfall(
     steps: Sequence[GapStep],
     *,
     noise_floor: float | None = None,
-    title: str | None = None,
     unit: str = "µm",
 ) -> Figure:
     """How the gap falls as effects are added; points are poses that the fit never saw."""
@@ -119,8 +115,6 @@ def gap_waterfall(
         panel.tick_params(axis="y", length=0)
         if panel.get_legend_handles_labels()[0]:
             figure.legend(loc="outside lower center", ncols=3)
-        if title:
-            panel.set_title(title)
     return figure
 
 

@@ -41,9 +41,7 @@ class Estimate:
         return math.isfinite(self.value) and (self.std is None or math.isfinite(self.std))
 
 
-def parameter_forest(
-    estimates: Sequence[Estimate], *, reference_name: str = "reference", title: str | None = None
-) -> Figure:
+def parameter_forest(estimates: Sequence[Estimate], *, reference_name: str = "reference") -> Figure:
     """Every parameter relative to its reference (or to itself), with ±2 standard errors.
 
     A relative axis lets springs of different size share one picture; the values stand beside it.
@@ -79,8 +77,6 @@ def parameter_forest(
             if compared
             else "value / estimate, ±2 standard errors"
         )
-        if title:
-            panel.set_title(title)
     return figure
 
 

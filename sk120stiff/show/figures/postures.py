@@ -26,7 +26,6 @@ def posture_choice(
     chosen: tuple[float, float] | None = None,
     tilt: bool = False,
     blind: Array | None = None,
-    title: str | None = None,
 ) -> Figure:
     """What the tool's orientation does to the worst point, and the chosen posture along the path.
 
@@ -84,8 +83,6 @@ def posture_choice(
         panel.set_title("Along the path, chosen posture" if landscape else "Along the path")
         _widen(panel)
         figure.legend(loc="outside lower center", ncols=3)
-        if title:
-            figure.suptitle(title, x=0.01, ha="left")
     return figure
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import logging
 import math
 import os
@@ -21,7 +20,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from sk120stiff.errors import InputError, MissingPart, warn
-from sk120stiff.files import read_bytes, write_atomically
+from sk120stiff.files import sha256_of, write_atomically
 from sk120stiff.show import palette
 from sk120stiff.show.figures.saving import inline_svg
 from sk120stiff.show.report.blocks import Block, Note, Picture, SceneFrame, Section, Table
@@ -223,7 +222,7 @@ def reproducibility(
 
 def _digest(path: Path) -> str:
     try:
-        return hashlib.sha256(read_bytes(path)).hexdigest()
+        return sha256_of(path)
     except InputError:
         return "missing"
 

@@ -14,10 +14,10 @@ from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import told_next
 from sk120stiff.explain.findings import sentence_in
 from sk120stiff.explain.judge.posterior import NONE
-from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter
 from sk120stiff.show.figures.scores import score_bars
 from sk120stiff.show.report import Block, Items, Note, Picture, Section, Table
+from sk120stiff.show.stories.sizes_sections import estimates
 from sk120stiff.show.stories.verdicts import near, sentence_of
 from sk120stiff.show.wording import (
     chance,
@@ -25,8 +25,6 @@ from sk120stiff.show.wording import (
     number,
     percent,
     said_as,
-    said_in,
-    unit_of,
     with_error,
 )
 
@@ -107,10 +105,10 @@ def sizes_of(answer: Explanation, finding: Finding) -> Table | str:
     own = [p for p in answer.final.model.parameters if p.effect == finding.effect]
     if len(own) > MANY:
         return many_values(own)
-    rows = parameter_rows(answer.final, own)
-    return Table(
-        ["parameter", "value ± standard error", "95 % from", "to", "unit"],
-        rows,
+    return estimates(
+        answer.final,
+        own,
+        lambda p: p.spec.name,
         "Its size. An interval of a stiffness is open upwards where the readings do not exclude "
         "that this direction is rigid.",
     )
@@ -127,22 +125,6 @@ def many_values(parameters: Sequence[Parameter]) -> str:
         f"{said_as(largest.value, largest.std, largest.spec.unit)}. All stand in "
         "the model file."
     )
-
-
-def parameter_rows(fit: Fit, parameters: list[Parameter]) -> list[tuple[object, ...]]:
-    """Name, value ± error, interval and unit of parameters of a fitted model."""
-    ends = dict(zip((p.name for p in fit.parameters), fit.intervals(), strict=True))
-    unseen = unseen_reasons(fit)
-    rows: list[tuple[object, ...]] = []
-    for p in parameters:
-        if p.name in unseen:
-            rows.append((p.spec.name, "cannot be seen", None, None, unit_of(p.spec.unit)))
-            continue
-        low, high = ends.get(p.name, (math.nan, math.nan))
-        factor, unit = said_in(p.spec.unit, p.value)
-        value = with_error(factor * p.value, None if p.std is None else factor * p.std)
-        rows.append((p.spec.name, value, number(factor * low), number(factor * high), unit))
-    return rows
 
 
 def _evidence(finding: Finding) -> Table:

@@ -6,7 +6,7 @@ the point at the measured loads, joint by joint; people recognise a gear by its 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -56,16 +56,25 @@ def parameters_section(answer: Explanation) -> Section:
 
 def springs_table(fit: Fit) -> Table:
     """Estimates with error and 95 % interval."""
+    return estimates(fit, fit.parameters, _short, "Estimated parameters.")
+
+
+def estimates(
+    fit: Fit, parameters: Iterable[Parameter], called: Callable[[Parameter], str], caption: str
+) -> Table:
+    """Parameters of a fitted model, as they are called, with error and 95 % interval."""
+    ends = dict(zip((p.name for p in fit.parameters), fit.intervals(), strict=True))
     unseen = unseen_reasons(fit)
     rows: list[tuple[object, ...]] = []
-    for p, (low, high) in zip(fit.parameters, fit.intervals(), strict=True):
+    for p in parameters:
+        if p.name in unseen:
+            rows.append((called(p), UNSEEN, None, None, unit_of(p.spec.unit)))
+            continue
+        low, high = ends.get(p.name, (np.nan, np.nan))
         factor, unit = said_in(p.spec.unit, p.value)
-        told: tuple[object, ...] = (UNSEEN, None, None)
-        if p.name not in unseen:
-            told = (_valued(p, factor), number(factor * low), number(factor * high))
-        rows.append((_short(p), *told, unit))
-    return Table(["parameter", "value ± standard error", "95 % from", "to", "unit"], rows,
-                 "Estimated parameters.")  # fmt: skip
+        told = (_valued(p, factor), number(factor * low), number(factor * high))
+        rows.append((called(p), *told, unit))
+    return Table(["parameter", "value ± standard error", "95 % from", "to", "unit"], rows, caption)
 
 
 def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
