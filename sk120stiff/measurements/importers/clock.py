@@ -29,7 +29,8 @@ EXAMPLES = "2026-11-22 10:15:00, 22.11.2026 10:15:00, 10:15:00"
 EITHER_WAY = "day and month can be read either way; write dates as 2026-11-22"
 _OTHER_ORDER = {"dmy": re.compile("%m[/-]%d"), "mdy": re.compile("%d[/-]%m")}
 _CLOCK = re.compile(
-    r"(?:\d{1,4}[./-]\d{1,2}[./-]\d{2,4}[T ]?)?(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?: ?[AP]M|Z)?)?",
+    r"(?:\d{1,4}[./-]\d{1,2}[./-]\d{2,4}[T ]?)?"
+    r"(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?: ?[AP]M|Z)?)?",
     re.IGNORECASE,
 )
 _HALF_DAY = re.compile(r"(?<=\d)\s*([ap])\.?\s?m\.?$", re.IGNORECASE)

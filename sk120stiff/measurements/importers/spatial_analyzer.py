@@ -16,7 +16,7 @@ _LABELS = {3: ("Collection", "Group", "Target"), 2: ("Group", "Target"), 1: ("Ta
 
 @dataclass(frozen=True)
 class SpatialAnalyzer:
-    """Names in one to three columns, three coordinates, their uncertainties and times if exported."""
+    """Names in one to three columns, three coordinates; uncertainties and times if exported."""
 
     name: str = "sa"
     title: str = "SpatialAnalyzer's ASCII export"

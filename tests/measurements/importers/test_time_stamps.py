@@ -50,7 +50,14 @@ def test_names_that_are_told_of_a_file_with_times(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "cell",
-    ["10:00:33.930", "10:00", "2026-10-14", "14.10.2026 10:00:33", "2026-10-14T10:00:33Z", "1:05 PM"],
+    [
+        "10:00:33.930",
+        "10:00",
+        "2026-10-14",
+        "14.10.2026 10:00:33",
+        "2026-10-14T10:00:33Z",
+        "1:05 PM",
+    ],
 )
 def test_a_clock(cell: str) -> None:
     assert is_clock(cell)
