@@ -69,9 +69,12 @@ def _of_one_pose(labels: Sequence[str], q: Array, W: Array) -> Labels | None:
     for label, place in zip(labels, at, strict=True):
         groups.setdefault(place, []).append(label)
     own = {place: list(dict.fromkeys(group)) for place, group in groups.items()}
-    names = {place: _shared(group) or group[0] for place, group in own.items()}
-    if len(set(names.values())) < len(names):
-        names = {place: group[0] for place, group in own.items()}
+    names = {place: group[0] for place, group in own.items()}
+    for way in (_begin_of, _end_of):
+        shared = {p: group[0] if len(group) == 1 else way(group) for p, group in own.items()}
+        if all(shared.values()) and len(set(shared.values())) == len(shared):
+            names = shared
+            break
     several = [place for place, group in own.items() if len(group) > 1]
     first = own[several[0]]
     said = (
@@ -82,21 +85,20 @@ def _of_one_pose(labels: Sequence[str], q: Array, W: Array) -> Labels | None:
     return tuple(names[place] for place in at), None, [said]
 
 
-def _shared(labels: Sequence[str]) -> str:
-    """What labels begin with up to a mark, or up to a letter behind a number, or end with behind a
-    mark; empty where they share no such part."""
-    if len(labels) == 1:
-        return labels[0]
+def _begin_of(labels: Sequence[str]) -> str:
+    """What labels begin with, up to a mark or to a letter behind a number; else empty."""
     begin = _begin(labels)
-    end = _begin([label[::-1] for label in labels])[::-1]
     behind = [label[len(begin) : len(begin) + 1] for label in labels]
-    if begin.rstrip(_MARKS) and (
-        begin[-1] in _MARKS
-        or all(each in ("", *_MARKS) for each in behind)
-        or (begin[-1].isdigit() and all(each.isalpha() or not each for each in behind))
-    ):
-        return begin.rstrip(_MARKS)
-    return end.lstrip(_MARKS) if end[:1] and end[0] in _MARKS else ""
+    marked = begin[-1:] in _MARKS or all(each in _MARKS for each in behind)
+    counted = begin[-1:].isdigit() and all(each.isalpha() or not each for each in behind)
+    return begin.rstrip(_MARKS) if marked or counted else ""
+
+
+def _end_of(labels: Sequence[str]) -> str:
+    """What labels end with behind a mark; empty without one."""
+    end = _begin([label[::-1] for label in labels])[::-1]
+    first = next((k for k, letter in enumerate(end) if letter in _MARKS), len(end))
+    return end[first:].lstrip(_MARKS)
 
 
 def _begin(labels: Sequence[str]) -> str:

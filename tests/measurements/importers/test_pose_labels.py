@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sk120stiff.measurements.importers.pose_labels import _shared
+from sk120stiff.measurements.importers.pose_labels import _begin_of, _end_of
 from tests.measurements.importers.reading import draft_of, written
 from tests.measurements.importers.test_several_files import brought
 from tests.measurements.importers.tracked import campaign
@@ -53,12 +53,13 @@ def test_labels_of_displacements_stay(tmp_path: Path) -> None:
     ("labels", "shared"),
     [
         (["P1_A", "P1_B"], "P1"), (["P1a", "P1b"], "P1"), (["P1", "P1_loaded"], "P1"),
-        (["empty/P7", "full/P7"], "P7"), (["P1", "P37"], ""), (["12", "13"], ""),
-        (["P1.1", "P1.2"], "P1"), (["A", "B"], ""),
+        (["empty/P7", "full/P7"], "P7"), (["0kg/P7", "5kg/P7"], "P7"),
+        (["12a", "13a"], ""), (["P1", "P37"], ""), (["12", "13"], ""), (["A", "B"], ""),
+        (["P1.1", "P1.2"], "P1"),
     ],
 )  # fmt: skip
 def test_what_labels_share(labels: list[str], shared: str) -> None:
-    assert _shared(labels) == shared
+    assert (_begin_of(labels) or _end_of(labels)) == shared
 
 
 def test_files_of_one_campaign_share_poses(tmp_path: Path) -> None:
