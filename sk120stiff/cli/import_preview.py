@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import groupby
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import numpy as np
 
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import listed
-from sk120stiff.measurements.importers import Column, Imported, Told
+from sk120stiff.measurements.importers import Column, Imported, Sheet, Told
+from sk120stiff.measurements.importers.contract import Unpaired
 from sk120stiff.measurements.importers.words import kind_of
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.robot import Robot
@@ -51,7 +53,13 @@ def document_of(found: Imported, out: Path | None, *, written: bool) -> dict[str
             for unit, stated in (_unit(c, found.told),)
         ],
         "unused": list(draft.unused),
-        "skipped": [{"line": line, "reason": reason} for line, reason in draft.sheet.skipped],
+        "skipped": [
+            {"line": line, "reason": reason}
+            for line, reason in (
+                *draft.sheet.skipped,
+                *((each.line, each.reason) for each in draft.sheet.unpaired),
+            )
+        ],
         "frame": draft.sheet.frame,
         "rows": len(draft.pose),
         "poses": len(set(draft.pose)),
@@ -183,13 +191,14 @@ def preview_of(found: Imported, robot: Robot) -> list[object]:
     shown = [(c.header, c.meaning, *_unit(c, found.told)) for c in sheet.columns]
     parts.append(table("Columns", ["column", "is", "unit", "stated in"], shown))
     parts.append(f"{len(draft.pose)} rows at {len(set(draft.pose))} poses.")
-    if sheet.skipped:
-        count = len(sheet.skipped)
+    if sheet.skipped or sheet.unpaired:
+        count = len(sheet.skipped) + len(sheet.unpaired)
         parts.append(f"Left out, {count} {'row' if count == 1 else 'rows'}:")
         by_reason = groupby(sorted(sheet.skipped, key=lambda s: (s[1], s[0])), key=lambda s: s[1])
         for reason, group in by_reason:
             lines = [str(line) for line, _ in group]
             parts.append(f"- line {listed(lines, most=SHOWN)}: {reason}")
+        parts += _unpaired(sheet)
     if draft.unused:
         parts.append("Not taken over:")
         parts += [f"- {item}" for item in draft.unused]
@@ -225,6 +234,27 @@ def _against(found: Imported, robot: Robot) -> str:
         f"{found.draft.pose[found.fitted_rows[fitted.worst]]}: {100 * fitted.rms / length:.2g} % "
         f"of the arm's {length:.3g} m."
     )
+
+
+def _unpaired(sheet: Sheet) -> list[str]:
+    """How many rows lack a partner, and the first of them, numbers in names in their order."""
+    groups: dict[str, list[Unpaired]] = {}
+    for each in sheet.unpaired:
+        groups.setdefault(each._replace(name="").reason, []).append(each)
+    said = []
+    for reason, group in groups.items():
+        group.sort(key=lambda each: (_natural(each.name), each.line))
+        named = bool(group[0].name)
+        shown = [each.name if named else str(each.line) for each in group]
+        of = " " if group[0].beside else ": "
+        said.append(f"- {'' if named else 'line '}{listed(shown, most=SHOWN)}{of}{reason}")
+    return said
+
+
+def _natural(name: str) -> list[tuple[bool, int, str]]:
+    """What names are sorted by: P2 comes before P10."""
+    parts = re.findall(r"\d+|\D+", name)
+    return [(not p.isdecimal(), int(p) if p.isdecimal() else 0, p) for p in parts]
 
 
 def _placing(found: Imported, robot: Robot) -> list[object]:

@@ -51,6 +51,9 @@ def without_copies(measurements: Measurements) -> tuple[Measurements, str | None
     more = " …" if len(copies) > 5 else ""
     said = (
         f"{len(copies)} rows repeat earlier ones to the last digit "
-        f"(line {', '.join(lines)}{more}). Copies show no noise, so they are masked here."
+        f"(lines {', '.join(lines)}{more}). Copies show no noise, so they are masked here."
+        if len(copies) > 1
+        else f"One row repeats an earlier one to the last digit (line {lines[0]}). A copy shows no "
+        "noise, so it is masked here."
     )
     return replace(measurements, use=use), said

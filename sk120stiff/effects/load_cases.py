@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -26,6 +26,13 @@ IDLE = -1  # in a history: no load, at a zero reading or before a repeat
 
 # What was worked out of the load cases of these readings serves every fit to them.
 _of_readings: WeakKeyDictionary[Measurements, LoadCases] = WeakKeyDictionary()
+
+
+OF_EACH_READING = (
+    "a", "wrench", "rotation", "reading_axes", "order", "time", "branch", "pose", "payload",
+    "temperature", "series", "station", "side", "zero_a", "zero_group", "repeat", "order_at_zero",
+    "time_at_zero",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,32 +217,10 @@ class LoadCases:
 
     def rows(self, pick: slice | Index | Mask) -> LoadCases:
         """Part of the readings."""
-
-        def part(x: Any) -> Any:
-            return None if x is None else x[pick]
-
-        return replace(
-            self,
-            a=self.a[pick],
-            wrench=self.wrench[pick],
-            rotation=self.rotation[pick],
-            reading_axes=self.reading_axes[pick],
-            order=part(self.order),
-            time=part(self.time),
-            branch=self.branch[pick],
-            pose=self.pose[pick],
-            point=self.point if self.point.ndim == 1 else self.point[pick],
-            payload=part(self.payload),
-            temperature=part(self.temperature),
-            series=part(self.series),
-            station=part(self.station),
-            side=part(self.side),
-            zero_a=part(self.zero_a),
-            zero_group=part(self.zero_group),
-            repeat=part(self.repeat),
-            order_at_zero=part(self.order_at_zero),
-            time_at_zero=part(self.time_at_zero),
-        )
+        whole = {name: getattr(self, name) for name in OF_EACH_READING}
+        part = {name: None if each is None else each[pick] for name, each in whole.items()}
+        point = self.point if self.point.ndim == 1 else self.point[pick]
+        return replace(self, point=point, **part)
 
 
 def load_case(

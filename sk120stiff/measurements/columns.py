@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from sk120stiff import units
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.table import Table
 
 FORCES = ("fx", "fy", "fz")
@@ -135,12 +135,19 @@ def assign_roles(
             _require(table, has, group)
     if not joints:
         unitless = [n for n in extra if table.column_units[n] is None]
-        shown = unitless[0] if unitless else "joint_1_s"
+        if unitless:
+            raise InputError(
+                f"no column holds a joint value: {listed(unitless)} "
+                f"{'has' if len(unitless) == 1 else 'have'} no unit",
+                where=f"{table.path}, line {table.header_line}",
+                remedy=f"Write the unit of a joint in its header: {unitless[0]}[deg] or "
+                f"{unitless[0]}[rad]; no unit is guessed. Joints are named as in the URDF.",
+            )
         raise InputError(
             "no column holds a joint value",
             where=f"{table.path}, line {table.header_line}",
             remedy="Add a column for each actuated joint, named as in the URDF, "
-            f"with its unit: {shown}[deg].",
+            "with its unit: joint_1_s[deg].",
         )
     return Roles(joints, frozenset(has), tuple(extra), measured, absolute)
 

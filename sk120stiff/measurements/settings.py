@@ -148,8 +148,7 @@ class Settings(Strict):
 
 _EXAMPLES = {
     "point": "point: {xyz: [-60.0, 40.0, 150.0], unit: mm}",
-    "force": "force: {frame: tool, rpy: [0, 0, 30], rpy_unit: deg, "
-    "point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
+    "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
     "displacement": "displacement: {frame: base, zero: shared}",
     "position": "position: {frame: unknown}",
     "rotation": "rotation: {axes: target}",

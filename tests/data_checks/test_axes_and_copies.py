@@ -82,6 +82,8 @@ def test_copied_rows_are_masked_and_told(model: Model, good: Measurements) -> No
     np.testing.assert_array_equal(np.flatnonzero(~single.use), [len(rows) - 2, len(rows) - 1])
     assert told is not None
     assert "2 rows repeat" in told
+    single, told = without_copies(good.select(rows[:-1]))
+    assert told is not None and told.startswith("One row repeats an earlier one")
 
 
 def test_repeats_that_coincide_on_a_coarse_instrument_are_kept(good: Measurements) -> None:

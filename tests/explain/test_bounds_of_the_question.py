@@ -36,7 +36,7 @@ def test_outliers_are_told_by_their_row_in_the_file_whatever_is_masked(springs):
     moved[40] += [0.0, 400e-6, 0.0]
     use = np.array(readings.use)
     use[0] = False
-    with pytest.warns(ToolkitWarning, match="repeat earlier ones"):
+    with pytest.warns(ToolkitWarning, match="repeats an earlier one"):
         answer = answered(springs, replace(readings, displacement=moved, use=use))
     assert answer.set_aside == (40,)
 

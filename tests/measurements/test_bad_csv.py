@@ -50,7 +50,7 @@ CSV = {
     "half an uncertainty": (with_column("sy[um]", "1", "1", "1"), ["'sx' is missing", "sx[um]"]),
     "no joint": (
         change("joint_1_s[deg],joint_2_l[deg]", "a,b"),
-        ["no column holds a joint", "[deg]"],
+        ["no column holds a joint", "[deg]", "a and b have no unit"],
     ),
     "one joint less": (
         change("joint_2_l[deg]", "spare"),

@@ -28,6 +28,11 @@ PARTS_OF_SECONDS = {  # powers of ten of a second
 EXAMPLES = "2026-11-22 10:15:00, 22.11.2026 10:15:00, 10:15:00"
 EITHER_WAY = "day and month can be read either way; write dates as 2026-11-22"
 _OTHER_ORDER = {"dmy": re.compile("%m[/-]%d"), "mdy": re.compile("%d[/-]%m")}
+_CLOCK = re.compile(
+    r"(?:\d{1,4}[./-]\d{1,2}[./-]\d{2,4}[T ]?)?"
+    r"(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(?: ?[AP]M|Z)?)?",
+    re.IGNORECASE,
+)
 _HALF_DAY = re.compile(r"(?<=\d)\s*([ap])\.?\s?m\.?$", re.IGNORECASE)
 _MIDNIGHT = re.compile(r"[T ](?:0?0:00(?::00(?:[.,]0+)?)?|12:00(?::00)? AM)$")
 _NO_DAY = re.compile(r"^(?:1899-12-30|30\.12\.1899|12/30/1899)[T ]")  # of a sheet's time alone
@@ -63,6 +68,11 @@ def since_first(*columns: Sequence[str], order: DateOrder | None = None) -> tupl
     if len(rising) == 1 or len(found) == 1:
         return tuple(map(repr, (rising or found)[0]))
     return EITHER_WAY if found else f"no time in seconds, and none like {EXAMPLES}"
+
+
+def is_clock(cell: str) -> bool:
+    """Is this a date, a time of the day, or both, as instruments write them?"""
+    return bool(cell) and _CLOCK.fullmatch(cell) is not None
 
 
 def since_1970(cells: Sequence[str]) -> tuple[str, tuple[str, ...]] | None:

@@ -113,6 +113,30 @@ class Column:
         return replace(self, cells=tuple(self.cells[k] for k in picked))
 
 
+class Unpaired(NamedTuple):
+    """A row that has none beside it in another file.
+
+    Args:
+        file, line, name: Where it stands, and its name if any.
+        lacks: What it has not, in words.
+        beside: Is it of a file beside the points, and no point?
+    """
+
+    file: Path
+    line: int
+    name: str
+    lacks: str
+    beside: bool = False
+
+    @property
+    def reason(self) -> str:
+        """In words."""
+        of = f"of {self.file.name}" if self.beside else ""
+        return (
+            " ".join(filter(None, (self.name, of))) + (": " if of or self.name else "") + self.lacks
+        )
+
+
 @dataclass(frozen=True)
 class Sheet:
     """Readings as a file has them, all of one length N.
@@ -132,6 +156,8 @@ class Sheet:
         doubts: What speaks against it, in sentences.
         subtracted: Are displacements such readings, one less the other?
         remarks: Comments and lines above the table, with their numbers.
+        unpaired: Rows without a partner in another file, or of such a file without a point.
+        by_order: Files whose rows were put beside these by order alone.
     """
 
     path: Path
@@ -151,6 +177,8 @@ class Sheet:
     subtracted: bool = False
     doubts: tuple[str, ...] = ()
     remarks: tuple[tuple[int, str], ...] = ()
+    unpaired: tuple[Unpaired, ...] = ()
+    by_order: tuple[Path, ...] = ()
 
     def get(self, meaning: str) -> Column | None:
         """The column of that meaning."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.absolute import SAME_POSE
 from sk120stiff.measurements.columns import QUATERNION
 from sk120stiff.measurements.importers.clock import EITHER_WAY, since_1970, since_first
 from sk120stiff.measurements.importers.compound_columns import COMMANDED_JOINT
@@ -19,6 +18,7 @@ from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
 from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
 from sk120stiff.measurements.importers.matrix_columns import MATRIX_END
 from sk120stiff.measurements.importers.orientation_columns import orientation_columns
+from sk120stiff.measurements.importers.pose_labels import pose_labels
 from sk120stiff.measurements.importers.told import (
     Told,
     numbers,
@@ -29,7 +29,6 @@ from sk120stiff.measurements.importers.told import (
     unit_of,
 )
 from sk120stiff.measurements.importers.unread_axes import displacements
-from sk120stiff.measurements.rows import rows_of_one_pose
 
 Written = tuple[tuple[str, tuple[str, ...]], ...]
 POSITIONS, SIGMAS = ("x", "y", "z"), ("sx", "sy", "sz")
@@ -127,9 +126,11 @@ def drafted(
     taken += [c for c in sheet.columns if c.meaning.startswith("tcp ")]
     use = _use(sheet)
     displaced = readings[0][0].startswith("d")
-    pose, label, notes = _labels(sheet, joints.values, loads.wrench, displaced=displaced)
+    pose, label, notes = pose_labels(sheet, joints.values, loads.wrench, displaced=displaced)
     said += notes
-    names = sheet.get("name")
+    names, stated = sheet.get("name"), sheet.get("pose")
+    if names is None and label is None and stated is not None and all(stated.cells):
+        names = stated  # of rows that are one pose
     if names is not None:
         taken.append(names)
         if label is not names:
@@ -359,38 +360,6 @@ def _use(sheet: Sheet) -> Mask:
         )
     used: Mask = values == 1.0
     return used
-
-
-def _labels(
-    sheet: Sheet, q: Array, W: Array, *, displaced: bool
-) -> tuple[tuple[str, ...], Column | None, list[str]]:
-    """Pose of every row, the column it is from, and what is to be said of it."""
-    stated = sheet.get("pose")
-    if stated is not None and all(stated.cells):
-        return stated.cells, stated, []
-    pose, said = rows_of_one_pose(q), "Rows with the same joint values are one pose."
-    if len(set(pose)) == len(pose) and np.ptp(W, axis=0).any() and not displaced:
-        pose = near_poses(q)
-        said = f"Rows whose joint values differ by less than {SAME_POSE:g} are one pose."
-    names = sheet.get("name")
-    own = names.cells if names else ()
-    same = len(set(own)) == len(set(pose)) == len(set(zip(own, pose, strict=False)))
-    if same and not any(cell[:1] in ("", "#") for cell in own):
-        return own, names, []
-    return pose, None, [said]
-
-
-def near_poses(q: Array) -> tuple[str, ...]:
-    """Labels of N rows: those whose joint values differ by no more than `SAME_POSE` have one."""
-    firsts: list[int] = []
-    labels = []
-    for row in range(len(q)):
-        near = np.abs(q[firsts] - q[row]).max(axis=1) <= SAME_POSE if firsts else np.zeros(0, bool)
-        if not near.any():
-            firsts.append(row)
-            near = np.append(near, True)
-        labels.append(f"P{int(np.argmax(near)) + 1}")
-    return tuple(labels)
 
 
 def paired_loads(draft: Draft) -> tuple[Array, Mask, int]:

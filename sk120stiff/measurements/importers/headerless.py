@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections import Counter
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.clock import is_clock
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import is_number
 
 
 def numeric(row: tuple[str, ...]) -> bool:
-    """Is this a row of readings: more numbers than words, a name before them apart?"""
-    return sum(map(is_number, row)) * 2 >= sum(cell != "" for cell in row) > 0
+    """Is this a row of readings: as many numbers as words, where a date or a time is neither?"""
+    count = sum(map(is_number, row))
+    return 2 * count >= sum(cell != "" and not is_clock(cell) for cell in row) and count > 0
 
 
 def shaped(source: Source) -> tuple[int, bool, int]:

@@ -14,9 +14,10 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.drafting import Draft, near_poses
+from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.held_orientations import held_orientations
 from sk120stiff.measurements.importers.loads import FORCES, MOMENTS
+from sk120stiff.measurements.importers.pose_labels import near_poses
 from sk120stiff.measurements.poses import rows_at_rest
 
 STILL = 2e-4  # rad or m: what encoders of an arm that stands may wander by

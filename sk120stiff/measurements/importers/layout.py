@@ -112,10 +112,11 @@ def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
     for number, text in reversed(grid.comments):
         if start is None or number > grid.lines[start]:
             continue
-        headers = tuple(c for c in re.split(r"\s*[,;\t]\s*|\s+", text) if c)
-        long = len(headers) == len(grid.rows[start])
-        if long and _names_enough(headers, source, meaning, grid.rows[start:]):
-            return _laid_out(source, headers, start, start, f"line {number}", meaning)
+        for mark in (r"\s*[,;\t]\s*", r"\s*[,;\t]\s*|\s+"):
+            headers = tuple(c for c in re.split(mark, text) if c)
+            long = len(headers) == len(grid.rows[start])
+            if long and _names_enough(headers, source, meaning, grid.rows[start:]):
+                return _laid_out(source, headers, start, start, f"line {number}", meaning)
     return None
 
 
@@ -129,8 +130,8 @@ def _with_what_stands_above(rows: tuple[tuple[str, ...], ...], k: int) -> tuple[
     turned = {axis for word, axis in zip(words, axes, strict=True) if word == "rotation"}
     called = {"position": "position", "rotation": "quat" if "w" in turned else "rotation"}
     return tuple(
-        f"{called[word]} {cell}" if word in called and axis in "xyzw" else cell
-        for word, axis, cell in zip(words, axes, row, strict=True)
+        f"{called[word]} {cell}" if word in called and axis in "xyzw" else cell or name
+        for word, axis, cell, name in zip(words, axes, row, above, strict=True)
     )
 
 
@@ -146,7 +147,8 @@ def _laid_out(
     source: Source, headers: tuple[str, ...], at: int, first: int, stated: str, meaning: Meaning
 ) -> Layout:
     grid = source.grid
-    headers = cut(headers)
+    longest = max((len(cut(row)) for row in grid.rows[first:]), default=0)
+    headers = cut(headers, min(len(headers), longest))  # cells may stand below a blank one
     named = [unit_of_header(h) if h else ("", None) for h in headers]
     units = [unit for _, unit in named]
     places = [f"the header, {stated}" if unit else "" for unit in units]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,6 +16,7 @@ from sk120stiff.measurements.importers.compound_headers import of_a_sensor
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
+from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.measurements.poses import rows_by_label
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition
@@ -137,10 +139,30 @@ def _refuse_a_force_along_nothing(sheet: Sheet) -> None:
             raise InputError(
                 f"nothing says along which axis {column.header!r} acts",
                 where=sheet.place(column),
-                remedy=f"Call it fx, fy or fz[{column.unit}] (axes of the base; a weight is a "
-                "negative fz), or add a column direction: -Z, +X and so on; if it is no load, take "
-                "it out.",
+                remedy=_towards(sheet)
+                or f"Call it fx, fy or fz[{column.unit}] (axes of the base; a weight is a negative "
+                "fz), or add a column direction (-Z, +X and so on) or a unit vector in columns ex, "
+                "ey, ez, in axes of the base; if it is no load, take it out.",
             )
+
+
+_ANCHOR = re.compile(
+    r"(?:rope |seil )?(?:anchor|anker|ankerpunkt|festpunkt|fixpunkt|pulley|rolle|umlenkrolle|hook|"
+    r"haken|eye|rope|seil)(?: ?(?:point|pos(?:ition)?|punkt))?[ _.]?[xyz]",
+    re.IGNORECASE,
+)
+
+
+def _towards(sheet: Sheet) -> str:
+    """What to do where columns hold the point that a rope pulls to; empty where none do."""
+    names = [c.header for c in sheet.spare if _ANCHOR.fullmatch(unit_of_header(c.header)[0])]
+    if len(names) < 3:
+        return ""
+    return (
+        f"{listed(names)} look like the point that a rope pulls to. Write the direction instead, a "
+        "unit vector in columns ex, ey, ez in axes of the base: (anchor - p) / |anchor - p|, where "
+        "p is the point at which the rope holds the arm at that pose."
+    )
 
 
 def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:

@@ -138,10 +138,11 @@ def _no_positions(source: Source, joints: Layout) -> InputError:
         where=str(source.path),
         remedy="If they are there, name all columns with --columns: x,y,z for positions, dx,dy,dz "
         "for displacements, 'x unloaded,y unloaded,z unloaded,x loaded,y loaded,z loaded' for "
-        "positions without and with load, d,ux,uy,uz for what a gauge reads along a direction, a "
-        "dash for what is not needed. Distances to fixed points need no import: docs/FILES.md "
-        "shows their file (l[mm],ax[m],ay[m],az[m]). If positions are in another file, give that "
-        "as FILE, and this one as --joints-file.",
+        "positions without and with load, d,ux,uy,uz for what a gauge reads along a direction (or "
+        "d and 'reading direction', which holds +X, -Z and so on), a dash for what is not needed. "
+        "Distances to fixed points need no import: docs/FILES.md shows their file (l[mm],ax[m],"
+        "ay[m],az[m]). If positions are in another file, give that as FILE, and this one as "
+        "--joints-file.",
     )
 
 

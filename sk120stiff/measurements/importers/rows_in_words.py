@@ -15,6 +15,7 @@ from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.loads import FORCES, STANDARD_GRAVITY
 from sk120stiff.measurements.importers.masses import MASSES
 from sk120stiff.measurements.importers.told import Told, numbers
+from sk120stiff.measurements.importers.unread_axes import GAUGE, IN_A_LETTER
 from sk120stiff.measurements.importers.words import unit_of_header
 
 _BRANCHES = {
@@ -46,6 +47,7 @@ def understood_words(sheet: Sheet, told: Told) -> Sheet:
     """
     sheet = _with_branches(sheet)
     sheet = _with_repeats(sheet)
+    sheet = _with_reading_along(sheet)
     direction = sheet.get("force direction") or sheet.get("direction")
     if direction is None:
         return _with_force_along(sheet, told)
@@ -56,6 +58,44 @@ def understood_words(sheet: Sheet, told: Told) -> Sheet:
         "up and down, auf and ab, Belastung and Entlastung)"
     )
     return _left_out(sheet, direction, why)
+
+
+def _with_reading_along(sheet: Sheet) -> Sheet:
+    """The direction that a gauge reads along, as a vector where it is told by a letter.
+
+    Raises:
+        InputError: A word that names no axis, beside a reading of a gauge.
+    """
+    column = sheet.get(IN_A_LETTER)
+    if column is None:
+        return sheet
+    if not any(sheet.get(word) for word in (GAUGE, f"loaded {GAUGE}")):
+        return _left_out(sheet, column, "no gauge stands beside it")
+    along = [_along(cell) for cell in column.cells]
+    if None in along:
+        row = along.index(None)
+        raise InputError(
+            f"{column.cells[row]!r} is no axis that a gauge reads along",
+            where=sheet.place(column, row),
+            remedy="Write +X, -Z and so on, axes of the base in which its reading rises; of other "
+            "directions give the unit vector in columns ux, uy, uz.",
+        )
+    known = [each for each in along if each is not None]
+    made = [
+        Column(
+            column.header, f"u{axis}", None, column.stated,
+            tuple(("-1" if sign == "-" else "1") if own == axis else "0" for own, sign in known),
+            1.0, column.file,
+        )
+        for axis in "xyz"
+    ]  # fmt: skip
+    new = replace(sheet, columns=(*(c for c in sheet.columns if c is not column), *made))
+    shown = ", ".join(dict.fromkeys(column.cells))
+    return _noting(
+        new,
+        f"The reading of the gauge is taken to rise along {column.header} ({shown}), axes of the "
+        "base.",
+    )
 
 
 def _with_branches(sheet: Sheet) -> Sheet:

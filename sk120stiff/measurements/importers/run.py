@@ -172,9 +172,7 @@ def import_readings(
     told = told or Told()
     prismatic = tuple(n for n, s in zip(robot.actuated, robot.prismatic, strict=True) if s)
     paths = [path] if isinstance(path, str | os.PathLike) else path
-    _refuse_beside_several(paths, {
-        "--joints-file": joints_file, "--loads-file": loads_file, "--before": before,
-    })  # fmt: skip
+    _refuse_beside_several(paths, before)
     of_sheets = named_sheets([sheet] if isinstance(sheet, str) else sheet or [])
     files = {"before": before, "joints": joints_file, "loads": loads_file}
     refuse_other_files([Path(one) for one in paths], told)
@@ -250,25 +248,15 @@ def import_readings(
     )
 
 
-def _refuse_beside_several(paths: Sequence[object], beside: dict[str, Path | None]) -> None:
-    given = [option for option, path in beside.items() if path is not None]
-    if given and len(paths) > 1:
+def _refuse_beside_several(paths: Sequence[object], before: Path | None) -> None:
+    if before is not None and len(paths) > 1:
         raise InputError(
-            f"{len(paths)} files of positions, and one of {_HOLDS[given[0]]}",
-            where=given[0],
-            remedy="Import them one by one, or put the columns of both into each file."
-            if "--before" in given
-            else "If they are the same poses without and with a load, give the file without as "
-            "--before FILE, and the other alone. Else import them one by one, or put the columns "
-            "of both into each file.",
+            f"{len(paths)} files of positions, and one of positions without load",
+            where="--before",
+            remedy="Import them one by one, or put the columns of both into each file.",
         )
     if not paths:
         raise InputError("no file is given", remedy="Give one file, or several of one campaign.")
-
-
-_HOLDS = {  # what the file of an option holds
-    "--joints-file": "joints", "--loads-file": "loads", "--before": "positions without load",
-}  # fmt: skip
 
 
 def _sheet(
@@ -311,7 +299,10 @@ def _sheet(
         more = opened(Source(path, source.actuated, role, sheet=sheets.get(role), called=role))
         if path == source.path and more.given and more.given.sheet:
             used.append(more.given.sheet)
-        sheet = paired(sheet, formats.chosen(more)[0].read(more), role)
+        sheet = paired(
+            sheet, formats.chosen(more)[0].read(more), role,
+            by_clock=True, alone=len(beside) == 1, dates=told.dates,
+        )  # fmt: skip
     sheet = understood_words(of_marker(sheet, source.marker), told)
     sheet = named(unfolded(with_told_mass(sheet, told)))
     if book:

@@ -8,7 +8,9 @@ from itertools import accumulate, pairwise
 from pathlib import Path
 
 from sk120stiff.errors import InputError, listed
-from sk120stiff.measurements.importers.contract import FILE, Column, Sheet
+from sk120stiff.measurements.importers.contract import FILE, Column, Sheet, Unpaired
+from sk120stiff.measurements.importers.load_pairs import LOADS
+from sk120stiff.measurements.importers.pairing import SHARED, label_of
 
 LABELS = ("pose", "name")  # which mean another thing in another file
 SHOWN = 4  # files that are told by name
@@ -60,6 +62,8 @@ def joined(sheets: Sequence[Sheet]) -> Sheet:
             for sheet, start in zip(sheets, starts, strict=False)
             for line, why in sheet.skipped
         ),
+        unpaired=_unpaired(sheets, starts),
+        doubts=tuple(dict.fromkeys([*(d for s in sheets for d in s.doubts), *_the_same(sheets)])),
         unused=tuple(dict.fromkeys(item for sheet in sheets for item in sheet.unused)),
         notes=(
             *dict.fromkeys(note for sheet in sheets for note in sheet.notes),
@@ -69,6 +73,36 @@ def joined(sheets: Sequence[Sheet]) -> Sheet:
             *said,
         ),
     )
+
+
+def _the_same(sheets: Sequence[Sheet]) -> list[str]:
+    """Whether files that say no load hold the same names, as passes without and with one do."""
+    names = [set(c.cells) if (c := label_of(sheet)) else set() for sheet in sheets]
+    shared = set.intersection(*names)
+    loads = any(sheet.get(word) for sheet in sheets for word in LOADS)
+    if loads or len(shared) < SHARED * min(map(len, names)) or not shared:
+        return []
+    return [
+        "The files hold the same names, and none says a load. If one was read without and the "
+        "other with a load, give the file without as --before FILE, and the other alone; or say "
+        "what hung on the tool: --payload 'a.csv=0 kg' --payload 'b.csv=5 kg'."
+    ]
+
+
+def _unpaired(sheets: Sequence[Sheet], starts: Sequence[int]) -> tuple[Unpaired, ...]:
+    """Points of each file that lack a row beside them, and rows beside that no file has a point of.
+
+    Rows of the file beside belong to points of one file or another.
+    """
+    own = [
+        each._replace(line=each.line + start)
+        for sheet, start in zip(sheets, starts, strict=False)
+        for each in sheet.unpaired
+        if not each.beside
+    ]
+    beside = [{each for each in s.unpaired if each.beside} for s in sheets]
+    first = (each for each in sheets[0].unpaired if each.beside)
+    return (*own, *(each for each in first if all(each in of for of in beside)))
 
 
 def _labels(paths: Sequence[Path]) -> list[str]:

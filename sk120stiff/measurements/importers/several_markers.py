@@ -106,12 +106,26 @@ def refuse_several_points(draft: Draft) -> None:
     far = [pair for pair in pairs if pair[0] > APART]
     if far and len(far) > MOST * len(pairs):
         apart, begin, row = far[0]
+        cause = "they are of different points of the arm"
+        if sheet.by_order:
+            beside = listed([path.name for path in sheet.by_order])
+            cause = (
+                f"the rows of {beside}, which were put beside them by order, are those of other "
+                "points, or they are of different points of the arm"
+            )
+            remedy = (
+                "If one file lacks a row that the other has, all rows behind it are apart: give "
+                "both files a column of names, or one of times. If not: name the column that says "
+                f"which 'marker'. {remedy}"
+            )
+        else:
+            remedy = f"Name the column that says which 'marker'. {remedy}"
         raise InputError(
             f"at pose {draft.pose[row]} two positions under the same load lie {1e3 * apart:.3g} mm "
-            f"apart, lines {sheet.lines[begin]} and {sheet.lines[row]}, and so at most poses: they "
-            "are of different points of the arm",
+            f"apart, lines {sheet.lines[begin]} and {sheet.lines[row]}, and so at most poses: "
+            f"{cause}",
             where=str(sheet.path),
-            remedy=f"Name the column that says which 'marker'. {remedy}",
+            remedy=remedy,
         )
 
 

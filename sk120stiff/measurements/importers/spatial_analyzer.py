@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from sk120stiff.measurements.importers.clock import is_clock
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.layout import layout_of, sheet_by_order
@@ -15,7 +16,7 @@ _LABELS = {3: ("Collection", "Group", "Target"), 2: ("Group", "Target"), 1: ("Ta
 
 @dataclass(frozen=True)
 class SpatialAnalyzer:
-    """Names in one to three columns, three coordinates, and their uncertainties if exported."""
+    """Names in one to three columns, three coordinates; uncertainties and times if exported."""
 
     name: str = "sa"
     title: str = "SpatialAnalyzer's ASCII export"
@@ -43,6 +44,9 @@ class SpatialAnalyzer:
     def _columns(self, source: Source) -> tuple[str, ...] | None:
         """Names of the columns of a file without headers."""
         row = next((r for r in source.grid.rows if sum(map(is_number, r)) >= 3), ())
+        clocks: tuple[str, ...] = ()
+        while row and is_clock(row[-1]) and not is_number(row[-1]):
+            clocks, row = ("time" if ":" in row[-1] else "date", *clocks), row[:-1]
         numbers = 0
         while numbers < len(row) and is_number(row[-1 - numbers]):
             numbers += 1
@@ -54,4 +58,4 @@ class SpatialAnalyzer:
         said = " ".join(text for _, text in source.grid.comments).lower()
         more = ("ux", "uy", "uz") if "uncert" in said and numbers >= 6 else ()
         names = (*labels, "x", "y", "z", *more)
-        return (*names, *["-"] * (len(labels) + numbers - len(names)))
+        return (*names, *["-"] * (len(labels) + numbers - len(names)), *clocks)

@@ -17,10 +17,11 @@ from sk120stiff.arrays import Index
 from sk120stiff.errors import InputError, Refusal, listed
 from sk120stiff.measurements.cloud import FEWEST
 from sk120stiff.measurements.importers.contract import FILE
-from sk120stiff.measurements.importers.drafting import Draft, near_poses
+from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.frames import counted_poses, laid_over, placed
 from sk120stiff.measurements.importers.hung_masses import OPTION
 from sk120stiff.measurements.importers.moved_or_bent import moved
+from sk120stiff.measurements.importers.pose_labels import near_poses
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length

@@ -16,6 +16,7 @@ from sk120stiff.measurements.importers.told import Told, numbers, quantity, text
 AXES = ("dx", "dy", "dz")
 GAUGE = "gauge"  # meaning of what a dial gauge reads along ALONG
 ALONG = ("ux", "uy", "uz")
+IN_A_LETTER = "reading direction"  # meaning of a column that has +X, -Z and so on instead
 BLANK = {
     "", "nan", "n/a", "na", "n.a.", "n.a", "-", "--", "---", "none", "null", "#n/a",
 }  # fmt: skip
@@ -26,11 +27,17 @@ _Meaning = tuple[str, float] | None
 
 
 def with_gauges(names: Sequence[str], meanings: Sequence[_Meaning]) -> list[_Meaning]:
-    """``d`` beside ``ux uy uz`` is what a gauge reads along that direction; else those three are
-    uncertainties."""
+    """``d`` beside ``ux uy uz``, or beside a column of letters of axes, is what a gauge reads along
+    that direction; else those three are uncertainties."""
     plain = [" ".join(name.replace("_", " ").lower().split()) for name in names]
     read = [k for k, name in enumerate(plain) if name in _GAUGES and meanings[k] is None]
     others = {known[0] for known in meanings if known}
+    letters = IN_A_LETTER in others
+    if letters and (pair := gauge_pair(names)):
+        of = {k: (f"{state} {GAUGE}", 1.0) for state, k in pair.items()}
+        return [of.get(k, known) for k, known in enumerate(meanings)]
+    if letters and len(read) == 1 and not others & {"x", *AXES}:
+        return [(GAUGE, 1.0) if k in read else known for k, known in enumerate(meanings)]
     if set(ALONG) <= set(plain) and (pair := gauge_pair(names)):
         told = {name: (name, 1.0) for name in ALONG} | {
             plain[k]: (f"{state} {GAUGE}", 1.0) for state, k in pair.items()
@@ -126,6 +133,6 @@ def _of_gauges(
     )
     said = [
         f"{gauge.header} is what a gauge read along the direction "
-        f"{', '.join(c.header for c in along)}, in axes of the base."
+        f"{', '.join(dict.fromkeys(c.header for c in along))}, in axes of the base."
     ]
     return np.full((len(sheet.lines), 3), np.nan), written, [gauge, *along], said

@@ -60,6 +60,9 @@ _NAMES = {
     "direction": "direction|dir|load direction|richtung|lastrichtung|belastungsrichtung|sens|"
     "direzione|dirección",
     "force direction": "force direction|direction of force|kraftrichtung",
+    "reading direction": "reading direction|direction of reading|measuring direction|measurement "
+    "direction|gauge direction|dial direction|messrichtung|tastrichtung|ableserichtung|"
+    "sens de mesure|direzione di misura|dirección de medida",
     "marker": "marker|reflector|smr",
     "station": "station|station id|station no|station name|instrument station|tracker station|"
     "instrument id|instrument setup|tracker setup|tracker position|standpunkt|standort|stazione",

@@ -70,9 +70,9 @@ def test_poses_of_one_file_alone_are_told_and_left_out(tmp_path: Path) -> None:
     positions(given["before"], SEEN.x, names)
     found = brought(given)
     assert found.useful_poses == 13
-    lost = [why for _, why in found.draft.sheet.skipped]
-    assert f"{SEEN.names[0]} is not in before.csv" in lost
-    assert "elsewhere of before.csv has no point" in lost
+    lost = [each.reason for each in found.draft.sheet.unpaired]
+    assert f"{SEEN.names[0]}: not in before.csv" in lost
+    assert "elsewhere of before.csv: no point" in lost
 
 
 def test_two_loads_of_a_pose_share_the_reading_without(tmp_path: Path) -> None:
@@ -146,9 +146,18 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
     given = files(tmp_path)
     robot = load_robot(ur5(), tool="tool0")
     paths = [given["path"], given["before"]]
-    with pytest.raises(InputError, match="2 files of positions") as caught:
-        import_readings(paths, robot, joints_file=given["joints_file"])
-    assert "--before" in caught.value.remedy
+    with pytest.raises(InputError, match="2 files of positions, and one of positions without"):
+        import_readings(paths, robot, before=given["before"], joints_file=given["joints_file"])
+
+
+def test_two_passes_that_say_no_load_are_doubted(tmp_path: Path) -> None:
+    given = files(tmp_path)
+    paths = [given["path"], given["before"]]
+    robot = load_robot(ur5(), tool="tool0")
+    found = import_readings(paths, robot, joints_file=given["joints_file"])
+    assert any(
+        "the same names, and none says a load" in d and "--before" in d for d in found.doubts
+    )
 
 
 def test_loads_by_size_and_direction_in_their_own_file(tmp_path: Path) -> None:

@@ -36,9 +36,8 @@ def test_by_name_in_any_order(tmp_path: Path) -> None:
 def test_by_name_what_has_no_partner_is_listed(tmp_path: Path) -> None:
     found = paired(sheet_of(tmp_path, POINTS), joints(tmp_path, "XABY"), "joints")
     assert values(found) == {"A": "1", "B": "2"}
-    reasons = " ".join(reason for _, reason in found.skipped)
-    for words in ("D is not in file", "X of file has no point", "Y of file has no point"):
-        assert words in reasons
+    reasons = [each.reason for each in found.unpaired]
+    assert reasons == ["D: not in file", "X of file: no point", "Y of file: no point"]
 
 
 def test_by_order_counts_points_that_were_not_measured(tmp_path: Path) -> None:
