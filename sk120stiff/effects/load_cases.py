@@ -218,7 +218,9 @@ class LoadCases:
     def rows(self, pick: slice | Index | Mask) -> LoadCases:
         """Part of the readings."""
         whole = {name: getattr(self, name) for name in OF_EACH_READING}
-        part = {name: None if each is None else each[pick] for name, each in whole.items()}
+        part: dict[str, Any] = {
+            name: None if each is None else each[pick] for name, each in whole.items()
+        }
         point = self.point if self.point.ndim == 1 else self.point[pick]
         return replace(self, point=point, **part)
 
