@@ -350,6 +350,9 @@ def all_effects(
     *,
     poses: Sequence[str] = (),
     timed: bool = False,
+    series: Sequence[str] = (),
+    stations: Sequence[str] = ("",),
+    thermal: bool = False,
     absolute: bool = False,
     catalogue: Catalogue = CATALOGUE,
 ) -> tuple[Effect, ...]:
@@ -357,7 +360,10 @@ def all_effects(
 
     Those that positions alone show are left out unless readings are `absolute`.
     """
-    told = Options(tuple(poses), timed, rotations=absolute)
+    told = Options(
+        tuple(poses), timed, series=tuple(series), stations=tuple(stations), thermal=thermal,
+        rotations=absolute,
+    )  # fmt: skip
     return tuple(
         kind.at(robot, where, told)
         for kind in catalogue
