@@ -12,7 +12,6 @@ from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.values import value_lines
 from sk120stiff.effects import LinearElastic
-from sk120stiff.errors import listed
 from sk120stiff.explain import Explained
 from sk120stiff.explain.absolute.accounts import HeldOutFile
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
@@ -22,7 +21,6 @@ from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.absolute.words import findings, unseen
 from sk120stiff.model import Model, base_model
 
-LISTED = 6  # rows of a held-out file that are told one by one
 FEW = 4  # parameters of one effect that are printed; those of a joint's frame stand in the report
 
 
@@ -31,31 +29,22 @@ def positions_answer(answer: Explained, document: Mapping[str, object], out: Pat
     parts = _parts(answer, out)
     held: dict[str, object] | None = None
     if answer.heldout is not None:
-        held, said = _held_out(answer.heldout, answer.final.problem)
-        parts.append(said)
+        held = _held_out(answer.heldout, answer.final.problem)
+        parts.append(answer.heldout.sentence(answer.final.problem))
     return Answer({**document, "holdout": held}, parts)
 
 
-def _held_out(found: HeldOutFile, problem: PoseProblem) -> tuple[dict[str, object], str]:
-    """How far the held-out readings are off, as JSON and in a sentence."""
-    unit, whole = problem.unit, np.isfinite(found.distance)
+def _held_out(found: HeldOutFile, problem: PoseProblem) -> dict[str, object]:
+    """How far the held-out readings are off, as JSON."""
     readings, rows = found.readings, np.flatnonzero(found.set_aside)
-    ending = "um" if unit == "µm" else "urad"
-    document: dict[str, object] = {
+    ending = "um" if problem.unit == "µm" else "urad"
+    return {
         f"rms_{ending}": found.rms * 1e6,
-        "mean_distance_um": found.distance * 1e6 if whole else None,
+        "mean_distance_um": found.distance * 1e6 if np.isfinite(found.distance) else None,
         "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
         f"rms_of_all_{ending}": found.rms_of_all * 1e6,
         "placed_anew": found.anew,
     }
-    said = f"Held-out file: {1e6 * found.rms:.3g} {problem.rms_unit}"
-    said += f", {1e6 * found.distance:.3g} µm mean distance" if whole else ""
-    if len(rows):
-        lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows]
-        lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
-        said += f". Not counted: {lie} far off all others, {listed(lines, most=LISTED)}; with "
-        said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * found.rms_of_all:.3g} {unit}"
-    return document, f"{said}." + (f" {found.anew}" if found.anew else "")
 
 
 def yielding(model: Model) -> Model:

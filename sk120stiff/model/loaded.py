@@ -269,7 +269,7 @@ def loaded_uncertainty(
     L, B = known.factors(model.names)
     softness = np.asarray(np.linalg.eigvalsh(symmetric_part(C))[::-1], dtype=float)
     lost = np.isinf(spread(by_parameter @ L, by_parameter @ B, SLIGHT * np.abs(softness)))
-    drawn = _drawn(symmetric_part(C), change @ np.concatenate([L, B], axis=1))
+    drawn = _drawn(symmetric_part(C), change @ L)  # what nothing tells has no size to draw
     stiffness = found.principal.values
     with np.errstate(invalid="ignore"):
         std = np.where(lost | np.isinf(stiffness), np.inf, drawn.std(axis=0) * stiffness**2)

@@ -82,3 +82,20 @@ def test_what_does_not_show_is_unknown(model: Model) -> None:
 
 def test_a_model_without_uncertainty_has_no_plus_minus(model: Model) -> None:
     assert loaded_uncertainty(model, POSE, LOAD, loaded_stiffness(model, POSE, LOAD)) is None
+
+
+def test_what_nothing_tells_of_one_direction_leaves_the_others_their_own(model: Model) -> None:
+    """No load turned the first joint: it yields sideways, and along its axis nothing changes."""
+    aside = np.array([0.0, 0.2, -0.4, 0.0, 0.5, 0.0])  # in the plane of the arm
+    down = np.array([0.0, 0.0, -350.0, 0.0, 0.0, 0.0])
+    found = loaded_stiffness(known(model, 0.1), aside, down)
+    unseen = np.zeros((1, 3))
+    unseen[0, 0] = 1e-4  # rad/(N·m): far softer than anything else
+    doubts = [
+        loaded_uncertainty(known(model, 0.1, **more), aside, down, found)
+        for more in ({}, {"unseen": unseen})
+    ]
+    told, other = (doubt.principal for doubt in doubts if doubt is not None)
+    lost = np.isinf(other)
+    assert lost.any() and not lost.all()
+    np.testing.assert_allclose(other[~lost], told[~lost], rtol=0.05)

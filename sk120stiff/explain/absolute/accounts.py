@@ -9,6 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadError, Weighing
+from sk120stiff.errors import listed
 from sk120stiff.explain.absolute.candidates import COMPLIANCE, family
 from sk120stiff.explain.absolute.choose import Chosen, lengths
 from sk120stiff.explain.absolute.linear import Linear
@@ -16,9 +17,11 @@ from sk120stiff.explain.findings import Contender, Step
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.noise_sizes import wild_beside
 from sk120stiff.identify.absolute.placed_anew import placed_anew
+from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import warn_of_references
 
+LISTED = 6  # rows of a held-out file that are told one by one
 RIGID = "rigid"  # the model that has no effect
 
 
@@ -48,6 +51,20 @@ class HeldOutFile:
     rms_of_all: float
     readings: Measurements
     anew: str | None = None
+
+    def sentence(self, problem: PoseProblem) -> str:
+        """How far they are off, and which rows are not counted."""
+        readings, rows = self.readings, np.flatnonzero(self.set_aside)
+        said = f"Held-out file: {1e6 * self.rms:.3g} {problem.rms_unit}"
+        if np.isfinite(self.distance):
+            said += f", {1e6 * self.distance:.3g} µm mean distance"
+        if len(rows):
+            lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows]
+            lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
+            said += f". Not counted: {lie} far off all others, {listed(lines, most=LISTED)}; with "
+            said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * self.rms_of_all:.3g} "
+            said += problem.unit
+        return f"{said}." + (f" {self.anew}" if self.anew else "")
 
 
 def numbers_told(seen: Calibration, final: Calibration, readings: Measurements) -> Index:

@@ -67,6 +67,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         + (f" Always the same in such readings: {', '.join(item.exact)}." if item.exact else "")
         for item in answer.findings
     ]
+    held = [] if answer.heldout is None else [answer.heldout.sentence(answer.final.problem)]
     where = "loads" if answer.displaced else "poses"
     moves = budget_section(answer, f"at the measured {where}")
     return Report(
@@ -81,7 +82,8 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
                 ],
             ),
             Section(
-                "The gap, step by step", [_steps(answer), steps, *map(Note, answer.not_counted())]
+                "The gap, step by step",
+                [_steps(answer), steps, *map(Note, [*held, *answer.not_counted()])],
             ),
             *([_budget(answer, families)] if len(answer.families) > 1 else []),
             *([moves] if moves is not None else []),
