@@ -36,6 +36,7 @@ from sk120stiff.stiffness.kernel import run
 from sk120stiff.stiffness.kernel.compiled import part, told_of_compiling
 from sk120stiff.stiffness.kernel.run import announced
 from sk120stiff.stiffness.on_arrays import on_arrays
+from tests.oracles.pinocchio_jacobian import pinocchios
 from tests.oracles.sample_urdfs import mimic_tree, six_axis_arm
 from tests.robot.loop_arms import cylinder, four_bar, sk120_loop
 
@@ -80,7 +81,7 @@ def K_C_by_loops(robot: Robot, a: Array, wrench: Array, point: Array) -> tuple[A
     """J from Pinocchio, and K_C entry by entry from its columns; one pose."""
     motion = robot.coupling.motion(a)
     chain = robot.mechanism().chain
-    at_zero = robot.tree.jacobian(motion.q, robot.tool_frame, point)
+    at_zero = pinocchios(robot.tree, motion.q, robot.tool_frame, point)
     columns = at_zero[:, chain.coordinates]
     F, M = wrench[:3], wrench[3:]
     m = columns.shape[1]
