@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +13,6 @@ from sk120stiff.effects import (
     Effect,
     Elastic,
     Imposed,
-    LinearElastic,
     LoadCases,
     LoadError,
     ReadingError,
@@ -22,27 +20,19 @@ from sk120stiff.effects import (
     load_cases_of,
     referred,
 )
-from sk120stiff.effects.base import Moving
-from sk120stiff.effects.gear import GearHardening, LostMotion
 from sk120stiff.effects.joint_frame import JointFrame
-from sk120stiff.explain.absolute.linear import FAINT, Linear
+from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.options import Options
 from sk120stiff.identify import pose_parts
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import frames_off
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.absolute.start import options_of
+from sk120stiff.identify.absolute.other_causes import beside, causes_at, slopes
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model, Parameter
 from sk120stiff.robot import Robot
 
 FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
 FAR = 5.0  # times the usual size of a frame's error, beyond which it is as large as was found
-WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
-_SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)
-_ONLY_LOADED = ("zero_offset", "link_length")
-_BESIDE_FRAME = "reading_rotation"  # of displacements alone; positions have a frame for it
 COMPLIANCE = "compliance"  # the family of all that yields
 
 
@@ -54,35 +44,14 @@ def candidates_at(
     options: Options,
     catalogue: Catalogue,
 ) -> tuple[Effect, ...]:
-    """Every effect at every place that could show in these positions and is not `present`.
-
-    Errors of joint frames hold those of link lengths, and of zeros, which one number tells.
-    """
-    told = options_of(readings)
-    loaded = bool(readings.wrench.any())
-    said = readings.absolute
-    hung = said is not None and said.payload_differs
-    went = said is not None and said.channels.displacements_alone
-    out = []
-    for kind in catalogue:
-        if kind.name in _ONLY_LOADED or (kind.name == _BESIDE_FRAME and not went):
-            continue
-        if issubclass(kind, LoadError) and not (
-            loaded or kind.only_absolute or (kind.of_payload and hung)
-        ):
-            continue
-        if issubclass(kind, Elastic) and not issubclass(kind, _SHOWN_BY_WEIGHT):
-            continue
-        for where in kind.places(model_robot):
-            effect = kind.at(model_robot, where, told)
-            named = {effect.id, effect.name}
-            if effect.id in present or named & set(options.exclude):
-                continue
-            if options.only and not named & set(options.only):
-                continue
-            if effect.parameters and effect.applies_to(load_cases):
-                out.append(effect)
-    return tuple(out)
+    """Those causes that may be at work beside those `present`, and that are wanted."""
+    every = causes_at(model_robot, load_cases, readings, present, catalogue)
+    return tuple(
+        effect
+        for effect in every
+        if not {effect.id, effect.name} & set(options.exclude)
+        and (not options.only or {effect.id, effect.name} & set(options.only))
+    )
 
 
 def linear_at(
@@ -184,29 +153,6 @@ def _likeliest(laws: Sequence[Effect], found: Mapping[Effect, Array], seen: Cali
     return max(laws, key=takes_off)
 
 
-def slopes(problem: PoseProblem, model: Model, effects: Sequence[Effect]) -> dict[Effect, Array]:
-    """(M, p) derivatives of the readings by the parameters of effects that the model has not."""
-    found = dict[Effect, Array]()
-    first = len(model.parameters)
-    for part in _parts(effects, model.robot):
-        more = tuple(Parameter(effect, spec) for effect in part for spec in effect.parameters)
-        wider = replace(model, parameters=model.parameters + more, uncertainty=None)
-        slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-        ends = np.cumsum([first, *(len(effect.parameters) for effect in part)])
-        for effect, a, b in zip(part, ends[:-1], ends[1:], strict=True):
-            found[effect] = slope[:, a:b]
-    return found
-
-
-def beside(Q: Array, block: Array) -> Array:
-    """(M, p) what orthonormal columns do not make up of others; zero where that is rounding."""
-    before = np.linalg.norm(block, axis=0)
-    for _ in range(2):
-        block = block - Q @ (Q.T @ block)
-    block[:, np.linalg.norm(block, axis=0) <= FAINT * before] = 0.0
-    return block
-
-
 def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:
     """(p,) standard sizes that parameters have before anything is read.
 
@@ -221,23 +167,6 @@ def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:
             for size, low, s in zip(usual, least, effect.parameters, strict=True)
         ]
     return np.array(usual)
-
-
-def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:
-    """Effects in groups that make no mechanism too wide."""
-    part: list[Effect] = []
-    width = 0
-    for effect in effects:
-        own = 0
-        if isinstance(effect, Moving):
-            own = len(effect.virtual_joints(robot))
-        if part and width + own > WIDE:
-            yield part
-            part, width = [], 0
-        part.append(effect)
-        width += own
-    if part:
-        yield part
 
 
 def family(effect: Effect) -> str:

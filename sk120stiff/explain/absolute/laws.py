@@ -16,7 +16,7 @@ from scipy.special import expit
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Counting, Effect, Elastic, LoadCases, Weighing, referred
-from sk120stiff.explain.absolute.candidates import beside, slopes, usual_sizes
+from sk120stiff.explain.absolute.candidates import usual_sizes
 from sk120stiff.explain.absolute.choose import Chosen, usual
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.standing import alternatives
@@ -30,6 +30,7 @@ from sk120stiff.explain.judge.selection_uncertainty import (
 from sk120stiff.explain.select.score import SWEEPS
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.left_out import COUNTED, frames_off
+from sk120stiff.identify.absolute.other_causes import beside, slopes
 from sk120stiff.identify.absolute.start import options_of
 from sk120stiff.identify.written import with_values
 from sk120stiff.model import Parameter

@@ -16,8 +16,6 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect, Elastic, LoadError, Weighing
 
-FAINT = 1e-9  # share of a column left beside the base below which it is rounding
-
 
 @dataclass(frozen=True, eq=False)
 class Linear:
