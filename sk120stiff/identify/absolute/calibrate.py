@@ -31,7 +31,7 @@ from sk120stiff.identify.absolute.refusals import (
     refuse_another_robot,
 )
 from sk120stiff.identify.absolute.start import loaded, started
-from sk120stiff.identify.absolute.waves import beside_waves, waves_that_show
+from sk120stiff.identify.absolute.waves import beside_waves, doubtful, waves_that_show
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -59,6 +59,8 @@ class Calibration(Fit):
         notes: What is to be said, in sentences.
         form: The smooth error of the model in what is left, where it was looked for and is there;
             it is in the standard errors.
+        lacks: Causes that what is left asks for beyond doubt, where they were looked for; what they
+            would move the values by is in the standard errors.
     """
 
     problem: PoseProblem
@@ -69,6 +71,7 @@ class Calibration(Fit):
     waves: tuple[str, ...]
     notes: tuple[str, ...]
     form: ModelForm | None = None
+    lacks: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, found: Fit, **told: Any) -> Calibration:
@@ -176,10 +179,7 @@ def calibrate(
         refuse_a_wrong_end(found, placed, readings)
     chosen: tuple[str, ...] = ()
     if waves:
-        shown = waves_that_show(found, catalogue)
-        if shown:
-            chosen = tuple(effect.id for effect in shown)
-            found = extended(found, shown)
+        found, chosen = _with_waves(found, catalogue)
     a = readings.joints[readings.use]
     still = tuple(
         name for name, reach in zip(readings.joint_names, np.ptp(a, axis=0), strict=True)
@@ -248,6 +248,18 @@ def extended(found: Fit, effects: Sequence[Effect]) -> Fit:
     first = fitted(replace(of_poses(found), model=model))
     common = common_of(first).size if of_poses(found).common else 0.0
     return fitted(replace(of_poses(first), model=first.model, sigma=learned(first), common=common))
+
+
+def _with_waves(found: Fit, catalogue: Catalogue) -> tuple[Fit, tuple[str, ...]]:
+    """The fit with those waves of gears that show, each clear of zero beside the others."""
+    shown = waves_that_show(found, catalogue)
+    while shown:
+        wider = extended(found, shown)
+        gone = doubtful(wider, shown)
+        if gone is None:
+            return wider, tuple(effect.id for effect in shown)
+        shown = tuple(effect for effect in shown if effect != gone)
+    return found, ()
 
 
 def _problem(

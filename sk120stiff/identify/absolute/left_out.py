@@ -58,17 +58,19 @@ def widened_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
 
     Args:
         more: (M, k) derivative by them.
-        kept, prior, left: As of `_posterior`, of the others.
+        kept, prior, left: As of `posterior`, of the others.
     """
-    here, alone = _posterior(kept, prior, left)
+    here, alone = posterior(kept, prior, left)
     both = np.concatenate([prior, np.ones(more.shape[1])])
-    there, beside = _posterior(np.column_stack([kept, more]), both, left)
+    there, beside = posterior(np.column_stack([kept, more]), both, left)
     count = len(here)
-    return np.asarray(np.maximum(beside[:count] - alone, 0.0) + (there[:count] - here) ** 2)
+    return np.asarray(
+        np.maximum(np.diag(beside)[:count] - np.diag(alone), 0.0) + (there[:count] - here) ** 2
+    )
 
 
-def _posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
-    """(P,) step to the best values, and variance, from derivative (M, P), prior (P,) and gap (M,).
+def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
+    """(P,) step to the best values, and covariance, of derivative (M, P), prior (P,) and gap (M,).
 
     The prior's own pull counts in neither: two steps are compared. Of what the numbers cannot see
     neither says anything.
@@ -76,7 +78,7 @@ def _posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array
     information = jacobian.T @ jacobian + np.diag(prior)
     size = np.sqrt(np.diag(information))
     inverse = linalg.pinvh(information / np.outer(size, size)) / np.outer(size, size)
-    return np.asarray(inverse @ (jacobian.T @ left)), np.asarray(np.diag(inverse))
+    return np.asarray(inverse @ (jacobian.T @ left)), np.asarray(inverse)
 
 
 def _with_left_out(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, float]]:

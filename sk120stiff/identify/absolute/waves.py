@@ -11,79 +11,53 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy import stats
 from scipy.special import logsumexp
 
-from sk120stiff.arrays import Array, lengths_of
+from sk120stiff.arrays import Array
 from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.effects.options import Options
+from sk120stiff.effects.transmission_error import TransmissionError
+from sk120stiff.identify.absolute.asked_for import Blocks
 from sk120stiff.identify.absolute.left_out import COUNTED, widened_by
 from sk120stiff.identify.absolute.noise_sizes import of_poses
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.written import with_values
 
-CLEAR = 6.0  # by which the BIC must fall
+CHANCE = 1e-3  # probability of values as far off zero by noise alone
+ROUNDING = 1e-12  # of the largest variance, below which one is none
 NOISES = np.geomspace(0.1, 2.0, 30)  # times the gap that was left: what the noise may be
 LEAST = 1e-3  # probability of waves below which they are not looked at
 
 
 def waves_that_show(found: Fit, catalogue: Catalogue) -> tuple[Effect, ...]:
-    """Transmission errors that the BIC asks for, one after the other, beside a fitted model."""
-    effects = _further(found, catalogue)
-    if not effects:
-        return ()
-    white = _slopes(found, effects)
-    Q = np.asarray(np.linalg.qr(found.jacobian)[0])
-    white = white - Q @ (Q.T @ white)  # beside what the fit estimates already
-    ends = np.cumsum([len(effect.parameters) for effect in effects])
-    blocks = np.split(white, ends[:-1], axis=1)
-    picked = _forward(blocks, found.residual, len(found.x))
-    return tuple(effects[k] for k in picked)
+    """Transmission errors that a fitted model asks for, each beside all else that it asks for.
+
+    Any smooth cause that the model lacks is in part a wave of the first orders, and so is what the
+    law of such a cause leaves of it. So those waves alone show that bring more than every other
+    cause that is asked for brings beside them, at poses left out as well.
+    """
+    blocks = Blocks.of(found, catalogue)
+    loss = blocks.losses(chosen := blocks.asked_for())
+    waves = [k for k in chosen if isinstance(blocks.causes[k], TransmissionError)]
+    most = max((loss[k] for k in chosen if k not in waves), default=0.0)
+    return tuple(blocks.causes[k] for k in waves if loss[k] > most and blocks.sure_of(k, chosen))
 
 
-def _further(found: Fit, catalogue: Catalogue) -> list[Effect]:
-    """The waves that a model has not."""
-    robot, kind = found.model.robot, catalogue["transmission_error"]
-    present = {effect.id for effect in found.model.effects}
-    every = (kind.at(robot, where, Options()) for where in kind.places(robot))
-    return [effect for effect in every if effect.id not in present]
+def doubtful(found: Fit, waves: Sequence[Effect]) -> Effect | None:
+    """The one of these waves in a fit whose values together are least off zero, where by chance.
 
-
-def _slopes(found: Fit, effects: Sequence[Effect]) -> Array:
-    """(M, p) whitened derivative by further effects."""
-    problem, wider = of_poses(found), found.model
-    for effect in effects:
-        wider = wider + effect
-    slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
-    return problem.of_channels.apply(slope[:, len(found.model.parameters) :])
-
-
-def _forward(blocks: list[Array], residual: Array, spent: int) -> list[int]:
-    """Blocks that lower the BIC clearly, the best one first."""
-    count, chosen = len(residual), list[int]()
-    score = _bic([], residual)
-    while len(chosen) < len(blocks):
-        rest = [k for k in range(len(blocks)) if k not in chosen]
-        tried = {k: _bic([blocks[j] for j in (*chosen, k)], residual) for k in rest}
-        best = min(rest, key=lambda k: tried[k])
-        spent += blocks[best].shape[1]
-        if tried[best] > score - CLEAR or 2 * spent > count:
-            break
-        chosen.append(best)
-        score = tried[best]
-    return chosen
-
-
-def _bic(blocks: list[Array], residual: Array) -> float:
-    count, left, rank = len(residual), residual, 0
-    if blocks:
-        A = np.concatenate(blocks, axis=1)
-        size = lengths_of(A)
-        A = A / np.where(size > 0.0, size, 1.0)
-        weights, _, found, _ = np.linalg.lstsq(A, residual, rcond=1e-6)
-        left, rank = residual - A @ weights, int(found)
-    square = max(float(left @ left), 1e-300)
-    return float(count * np.log(square / count) + rank * np.log(count))
+    Single values need not be off zero: where a joint moves little, waves are alike there.
+    """
+    chance = {}
+    for effect in waves:
+        own = [k for k, p in enumerate(found.parameters) if p.effect.id == effect.id]
+        x, covariance = found.x[own], found.covariance[np.ix_(own, own)]
+        square = float(x @ np.linalg.pinv(covariance, rcond=ROUNDING, hermitian=True) @ x)
+        chance[effect] = float(stats.chi2.sf(square, max(len(own), 1)))
+    least = max(waves, key=lambda effect: chance[effect], default=None)
+    return least if least is not None and chance[least] > CHANCE else None
 
 
 def beside_waves(found: Fit, catalogue: Catalogue) -> Fit:
@@ -130,3 +104,20 @@ def _likely(kept: Array, more: Array, left: Array, unit: float, *, stated: bool)
 
     odds = evidence(size**2) - evidence(0.0 * size)
     return float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
+
+
+def _further(found: Fit, catalogue: Catalogue) -> list[Effect]:
+    """The waves that a model has not."""
+    robot, kind = found.model.robot, catalogue["transmission_error"]
+    present = {effect.id for effect in found.model.effects}
+    every = (kind.at(robot, where, Options()) for where in kind.places(robot))
+    return [effect for effect in every if effect.id not in present]
+
+
+def _slopes(found: Fit, effects: Sequence[Effect]) -> Array:
+    """(M, p) whitened derivative by further effects."""
+    problem, wider = of_poses(found), found.model
+    for effect in effects:
+        wider = wider + effect
+    slope = replace(problem, model=wider).channel_gap(wider.values, derivative=True)[1]
+    return problem.of_channels.apply(slope[:, len(found.model.parameters) :])
