@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Mask
+from sk120stiff.arrays import Array, Integers, Mask
 from sk120stiff.identify.absolute.pose_errors import Common, PoseWhitening, common_error
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.fit import Fit
@@ -19,6 +19,7 @@ START = {  # m or rad
 }  # fmt: skip
 SAME = 0.2  # change of the logarithm of a noise that is none
 TWICE = 5  # poses that must have been read more than once, to tell what poses have of their own
+TAIL = 0.95  # share of rows below those few that tell whether all are of one size
 FAR = 4.6  # standard sizes, rms over the numbers of a row, beyond which it is wild
 
 
@@ -69,15 +70,33 @@ def wild_beside(found: Fit, readings: Measurements, wild: Mask) -> Mask:
     problem = replace(of_poses(found), measurements=whole, model=found.model)
     gap = problem.channel_gap(found.model.values)[0] / problem.sigma_of_channels
     count = np.bincount(problem.rows, minlength=whole.n_readings)
-    square = np.bincount(problem.rows, gap**2, minlength=whole.n_readings)
-    usual = np.sqrt(stats.chi2.ppf(0.5, np.maximum(count, 1)))  # the median of so many numbers
-    kept = ~wild[readings.use]
-    size = float(np.median((np.sqrt(square) / usual)[kept & (count > 0)]))
-    far = np.sqrt(square / np.maximum(count, 1)) > FAR * size
+    square = np.asarray(np.bincount(problem.rows, gap**2, whole.n_readings), dtype=np.float64)
+    far = _far_off(square, count, ~wild[readings.use] & (count > 0))
     out = wild.copy()
-    if size > 0.0 and far.mean() < 0.1:
+    if far is not None and far.mean() < 0.1:
         out[np.flatnonzero(readings.use)] = far
     return out
+
+
+def _far_off(square: Array, count: Integers, kept: Mask) -> Mask | None:
+    """(N,) rows that are far off the size that the others have; None where they have none.
+
+    That size is what the median tells, and what the largest few do where they are larger than noise
+    of it has them: a cause that the model lacks shows in some rows more than in others, and those
+    in which it shows most are no slips.
+    """
+    number = np.maximum(count, 1)
+    middle, high = (np.sqrt(stats.chi2.ppf(share, number)) for share in (0.5, TAIL))
+    size = float(np.median((np.sqrt(square) / middle)[kept]))
+    if size <= 0.0:
+        return None
+    off, ends = np.sqrt(square / number), np.sqrt(square) / high
+    far = off > FAR * size
+    for row in sorted(np.flatnonzero(far), key=lambda k: off[k]):
+        if off[row] > FAR * max(size, float(np.quantile(ends[~far & (count > 0)], TAIL))):
+            break
+        far[row] = False
+    return np.asarray(far)
 
 
 def alike(size: float, before: float) -> bool:
