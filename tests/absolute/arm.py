@@ -37,6 +37,7 @@ class Arm:
     hardens: Array = field(default_factory=lambda: np.zeros(6))  # rad/(N·m)²
     weighs: bool = True
     payload: float = 0.0  # kg, at the tool's origin
+    rocks: Array = field(default_factory=lambda: np.zeros(2))  # base about x, y, rad/(N·m)
     up: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # against gravity, base
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
@@ -62,7 +63,10 @@ class Arm:
             q = start + self.compliance * torque + self.play * side
             q -= self.hardens * torque * np.abs(torque)
         x, R, _ = self.pose(q)
-        return x, R
+        ways = np.eye(3)[:2]
+        moment = [-replace(self, up=np.cross(self.up, way)).pose(q)[2] for way in ways]
+        rocked = Rotation.from_rotvec((self.rocks[:, None] * moment).T @ ways)
+        return rocked.apply(x), rocked.as_matrix() @ R
 
     def _slope(self, q: Array, k: int) -> Array:
         step = np.zeros(6)

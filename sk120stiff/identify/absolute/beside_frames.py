@@ -9,17 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import nnls
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Elastic
+from sk120stiff.effects import Effect, Elastic
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.joint_springs import JointSprings
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.other_causes import slopes
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.model import Model
@@ -35,11 +37,13 @@ class BesideFrames:
         along: (k, r, n) readings per compliance of every drive, under each of k stated loads.
         gap: (r,) what is to be explained.
         freedom: Numbers beyond those of frames and springs.
+        others: (r, p) readings per parameter of each further cause that was asked about.
     """
 
     along: Array
     gap: Array
     freedom: int
+    others: tuple[Array, ...] = ()
 
     def square(self, along: Array) -> float:
         """What springs leave of the gap's square with columns (r, n); none of them pushes."""
@@ -55,13 +59,16 @@ def without_springs(model: Model) -> Model:
 
 
 def beside_frames(
-    found: Calibration, loads: Sequence[Callable[[PoseProblem], PoseProblem]]
+    found: Calibration,
+    loads: Sequence[Callable[[PoseProblem], PoseProblem]],
+    causes: Sequence[Effect] = (),
 ) -> BesideFrames:
     """Springs about the rigid arm where a calibration has placed it.
 
     Args:
         found: The calibration.
         loads: What is to be stated otherwise, each as a change of the problem.
+        causes: What else may be at work, as everything is stated.
     """
     model = without_springs(found.model)
     robot, white = model.robot, found.problem.of_channels.apply
@@ -82,10 +89,14 @@ def beside_frames(
     gap, slope = columns(problem)
     Q = orthonormal(slope[:, ~own], ROUNDING)
     parts = [columns(otherwise(problem))[1][:, own] for otherwise in loads]
-    whole = np.column_stack([*parts, gap])
+    further = slopes(problem, model, causes)
+    blocks = [white(further[cause]) for cause in causes]
+    whole = np.column_stack([*parts, *blocks, gap])
     for _ in range(2):
         whole = whole - Q @ (Q.T @ whole)
     R = np.asarray(np.linalg.qr(whole)[1])
     n = int(own.sum())
     along = np.array([R[:, k * n : (k + 1) * n] for k in range(len(parts))])
-    return BesideFrames(along, R[:, -1], len(gap) - Q.shape[1] - n)
+    ends = np.cumsum([len(parts) * n, *(block.shape[1] for block in blocks)])
+    others = tuple(R[:, a:b] for a, b in pairwise(ends))
+    return BesideFrames(along, R[:, -1], len(gap) - Q.shape[1] - n, others)

@@ -14,9 +14,14 @@ import numpy as np
 from scipy.optimize import nnls
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects import CATALOGUE, Effect
+from sk120stiff.effects.joint_frame import JointFrame
+from sk120stiff.effects.joint_springs import JointSprings
+from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError, two_digits
-from sk120stiff.identify.absolute.beside_frames import ROUNDING, beside_frames
+from sk120stiff.identify.absolute.beside_frames import ROUNDING, beside_frames, without_springs
 from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.other_causes import causes_at
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 
@@ -25,6 +30,8 @@ BEYOND_DOUBT = 10.0  # logarithm of the odds for it
 AS_WELL = 1.25  # times the square that springs of either sign leave as gravity is stated
 FAR = np.radians(10.0)  # rad between two directions, below which the base is no more than unlevel
 ROUNDS = 30  # of fitting springs and direction in turn
+CLEAR = 3.0  # logarithm of the odds from which on one of two causes is the likelier
+OF_LEVEL = 2  # numbers that tell how a base is off level
 NEAR_AXIS = 0.02  # components below which a direction is that of an axis
 
 
@@ -53,10 +60,18 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
     off = float(np.arccos(np.clip(best @ stated, -1.0, 1.0)))
     share = f"{two_digits(100.0 * float(np.sqrt(after / before)))} %"
     if off < FAR:
+        other, lead = _another_cause(found, after)
+        if lead > 0.0:
+            return ()  # what is not level moves what yields alone, and more is moved
+        as_well = (
+            f" Or else {other.id} is at work, which explains nearly as much."
+            if other is not None and lead > -CLEAR
+            else ""
+        )
         return (
             f"The arm sags as if its base stood {np.degrees(off):.2g} deg off level: with "
             f"{_told(best, size)} springs leave {share} of the gap that they leave as it is "
-            "stated. Level the base, or write that into the YAML file.",
+            f"stated. Level the base, or write that into the YAML file.{as_well}",
         )
     if after > HALF * before:
         return ()
@@ -74,6 +89,37 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
         remedy=f"Hangs it from a wall or a ceiling? Write {_told(best, size)} into the YAML file; "
         f"or {_told(stated, size)}, if that is right.",
     )
+
+
+def _another_cause(found: Calibration, after: float) -> tuple[Effect | None, float]:
+    """The likeliest other cause, and the logarithm of its odds over a base that is not level.
+
+    Whatever goes with the sag looks in part like that, a base that yields under it above all.
+
+    Args:
+        found: The calibration.
+        after: Square of what springs leave under the gravity that explains most.
+    """
+    problem, model = found.problem, without_springs(found.model)
+    present = [effect.id for effect in model.effects]
+    causes = tuple(
+        cause
+        for cause in causes_at(
+            model.robot, problem.load_cases, problem.measurements, present, CATALOGUE
+        )
+        if not isinstance(cause, JointFrame | JointSprings | TransmissionError)
+    )
+    sag = beside_frames(found, [lambda problem: problem], causes)
+    lead, best = -np.inf, None
+    for cause, block in zip(causes, sag.others, strict=True):
+        pushes = [spec.lower != 0.0 for spec in cause.parameters]
+        own = [own for own in (sag.along[0], block, -block[:, pushes]) if own.size]
+        left = nnls(np.column_stack(own), sag.gap)[1] ** 2
+        more = (block.shape[1] - OF_LEVEL) * np.log(len(found.residual))
+        odds = 0.5 * (sag.freedom * np.log(after / max(left, 1e-300)) - more)
+        if odds > lead:
+            lead, best = float(odds), cause
+    return best, lead
 
 
 def _told(way: Array, size: float) -> str:
