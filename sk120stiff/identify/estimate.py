@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.robust import solve_robustly
+from sk120stiff.identify.robust import far_off, solve_robustly
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve
@@ -40,11 +40,26 @@ def fit_displacements(
     used = as_seen(model.robot, measurements).masked()
     open_ = [noise] if noise is not None else candidates(used)
     fits = [solve(Problem(model, used, each), method=method) for each in open_]
-    found = fits[likelier([2.0 * each.log_likelihood for each in fits])]
+    found = fits[likelier(support(fits, method))]
     if robust:
         found = solve_robustly(found.problem, method=method)
     reasons = () if noise is not None else decided(found.problem.noise, used)
     return _checked(replace(found, reasons=reasons), measurements)
+
+
+def support(fits: Sequence[Fit], method: Method = "trf") -> list[float]:
+    """Twice the log-likelihood of the readings under each of one or two noise models.
+
+    Readings far off the others under any of them have no say: a slip at one load of a pose looks
+    like a zero reading of its own. `explain` sets them aside before it decides.
+    """
+    slips = {int(row) for each in fits for row in far_off(each)} if len(fits) > 1 else set()
+    if slips:
+        whole = fits[0].problem.measurements
+        others = whole.select([row for row in range(whole.n_readings) if row not in slips])
+        problems = [Problem(each.problem.model, others, each.problem.noise) for each in fits]
+        fits = [solve(problem, method=method) for problem in problems]
+    return [2.0 * each.log_likelihood for each in fits]
 
 
 def as_seen(robot: Robot, measurements: Measurements) -> Measurements:

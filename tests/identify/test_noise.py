@@ -8,6 +8,7 @@ import pytest
 from sk120stiff.effects import effect
 from sk120stiff.identify import (
     Problem,
+    compare,
     contradiction,
     fit,
     fit_report,
@@ -132,6 +133,18 @@ def test_an_unknown_zero_is_decided_by_the_fit(springs, zero: str) -> None:
         right += found.problem.noise.zero == zero
         assert any(found.problem.noise.zero in reason for reason in found.reasons)
     assert right >= {"shared": 40, "separate": 36}[zero]
+
+
+def test_readings_far_off_have_no_say_in_what_zeros_are(springs, robot) -> None:
+    """A slip at one load of a pose looks like a zero reading of its own."""
+    readings = undescribed(readings_of(springs, poses=15, schedule=Schedule("ascending", 3, 1)))
+    slips = readings.displacement.copy()
+    slips[[7, 22], 2] *= -1.0
+    found = fit(springs, replace(readings, displacement=slips))
+    assert found.problem.noise.zero == "shared"
+    models = {"springs": springs, "rocking": springs + effect(robot, "base_rocking")}
+    for line in compare(models, replace(readings, displacement=slips)):
+        assert line.fit.problem.noise.zero == "shared"
 
 
 def test_intervals_hold_where_nobody_described_the_zero(springs) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.identify.checks.held_out import HeldOut, held_out, refitted
-from sk120stiff.identify.estimate import as_seen, fit_displacements, likelier
+from sk120stiff.identify.estimate import as_seen, fit_displacements, likelier, support
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.model import CALIBRATED, Model
@@ -111,8 +111,8 @@ def _fits(
         {name: fit_displacements(m, used, noise=noise) for name, m in models.items()}
         for noise in noises
     ]
-    best = [max(2.0 * found.log_likelihood for found in fits.values()) for fits in tried]
-    return tried[likelier(best)]
+    best = [max(fits.values(), key=lambda found: found.log_likelihood) for fits in tried]
+    return tried[likelier(support(best))]
 
 
 def _note(found: Fit, loss: float | None, std: float | None, *, first: bool, bic: float) -> str:
