@@ -7,6 +7,7 @@ or the work was done and its honest answer is "no" (`Refusal`, exit code 1).
 from __future__ import annotations
 
 import importlib.util
+import math
 import warnings
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
@@ -138,6 +139,34 @@ def two_digits(value: float) -> str:
     ('0.012', '10', '103', '1.2e+06')
     """
     return f"{value:.0f}" if 99.5 <= abs(value) < 1e5 else f"{value:.2g}"
+
+
+def to_one_place(error: float | None, *values: float) -> list[str]:
+    """Values, and last their standard error, all to the decimal place of its second digit.
+
+    Without an error, five significant digits each. What is infinite stays so.
+
+    >>> to_one_place(0.007945, -3842.412345)
+    ['-3842.4123', '0.0079']
+    >>> to_one_place(12637.0, 1.4973e6), to_one_place(2.5e-7, 1.2345e-5)
+    (['1497000', '13000'], ['1.234e-05', '0.025e-05'])
+    """
+    finite = [abs(value) for value in values if math.isfinite(value)]
+    if error is None or not math.isfinite(error) or error <= 1e-12 * max(finite, default=0.0):
+        return [f"{value + 0.0:.5g}" for value in (*values, *(() if error is None else (error,)))]
+    place = math.floor(math.log10(float(f"{error:.1e}"))) - 1  # 0.0996 is 0.10
+    first = math.floor(math.log10(max(finite + [error])))
+    plain = -5 < first < 8
+    power = 0 if plain else first
+    digits = max(0, power - place)
+
+    def said(value: float) -> str:
+        if not math.isfinite(value):
+            return f"{value:g}"
+        text = f"{round(value / 10.0**power, power - place) + 0.0:.{digits}f}"
+        return text if plain or float(text) == 0.0 else f"{text}e{power:+03d}"
+
+    return [said(value) for value in (*values, error)]
 
 
 def listed(words: Sequence[str], joint: str = "and", most: int | None = None) -> str:

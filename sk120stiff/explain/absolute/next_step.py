@@ -27,15 +27,22 @@ def headline(answer: Explained) -> str:
     open_ones = [item for item in answer.findings if not item.settled]
     count = len(answer.findings)
     if not open_ones:
-        what = "its name is" if count == 1 else f"its {count} names are"
-        return f"Something was missing, and {what} settled{more}."
+        if count == 1:
+            return f"Something was missing, and its name is settled{more}."
+        return f"{count} causes were missing, each by a name that is settled{more}."
     told = "; ".join(
         " or ".join((item.effect.id, *item.alternatives)) + f" ({likely(item.probability)})"
         for item in open_ones
     )
-    settled = f"{count - len(open_ones)} of {count} names" if count > 1 else "its name"
-    verb = ("are" if count - len(open_ones) != 1 else "is") if count > 1 else "is not"
-    return f"Something was missing: {settled} {verb} settled{more}. Open: {told}."
+    if count == 1:
+        return f"Something was missing: its name is not settled{more}. Open: {told}."
+    settled = count - len(open_ones)
+    named = (
+        ("none of their names is", "the name of one is")[settled]
+        if settled < 2
+        else (f"the names of {settled} are")
+    )
+    return f"{count} causes were missing: {named} settled{more}. Open: {told}."
 
 
 def next_step_of_positions(answer: Explained) -> str:

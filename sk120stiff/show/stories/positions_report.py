@@ -23,7 +23,7 @@ from sk120stiff.show.report import (
     Table,
 )
 from sk120stiff.show.stories.sizes_sections import budget_section
-from sk120stiff.show.wording import said_in, um
+from sk120stiff.show.wording import said_in, um, with_error
 
 
 def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[str, str]) -> Report:
@@ -119,14 +119,15 @@ def _values(answer: Explained) -> Table:
     for p in answer.final.parameters:
         factor, unit = said_in(p.spec.unit, p.value)
         if p.name in reasons:
-            rows.append((p.name, None, None, unit, reasons[p.name]))
+            rows.append((p.name, None, unit, reasons[p.name]))
         else:
             far = (
                 "" if abs(p.internal) <= answer.final.problem.reach(p) else "more than is plausible"
             )
             std = None if p.std is None else factor * p.std
-            rows.append((p.name, factor * p.value, std, unit, p.note or far))
-    return Table(("parameter", "value", "±", "unit", "note"), rows, "Fitted exactly, together.")
+            rows.append((p.name, with_error(factor * p.value, std), unit, p.note or far))
+    header = ("parameter", "value ± standard error", "unit", "note")
+    return Table(header, rows, "Fitted exactly, together.")
 
 
 def _steps(answer: Explained) -> Picture:
