@@ -11,12 +11,14 @@ from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
 from sk120stiff.cli.tables import table
+from sk120stiff.errors import to_one_place
 from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.absolute.remainder import remainder_entry, remainder_sentences
 from sk120stiff.identify.absolute.words import (
     angle_gap,
     findings,
     gap_sentence,
+    missing_sentences,
     unseen,
 )
 from sk120stiff.measurements import Measurements
@@ -52,6 +54,7 @@ def calibration_answer(
             for row in found.wild.nonzero()[0]
         ],
         "waves": list(found.waves),
+        "lacks": list(found.lacks),
         "remainder": remainder_entry(found),
         "noise": gap_sentence(found),
         "notes": list(found.notes),
@@ -59,8 +62,7 @@ def calibration_answer(
         "model": out,
     }
     parts: list[object] = [_table(found), *findings(found, readings), *remainder_sentences(found)]
-    if found.exceeds:
-        parts.append("What is missing is what 'sk120stiff explain' looks for.")
+    parts += missing_sentences(found)
     if out is not None:
         parts.append(f"Written to {out}.")
     return Answer(document, parts)
@@ -78,6 +80,6 @@ def _table(found: Calibration) -> object:
         if not known[k]:
             rows.append((p.name, "not identifiable", "", "", "", p.spec.unit))
             continue
-        std = "on its bound" if p.std is None else p.std
-        rows.append((p.name, p.value, std, low, high, p.spec.unit))
+        value, *ends, error = to_one_place(p.std or np.nan, p.value, low, high)
+        rows.append((p.name, value, "on its bound" if p.std is None else error, *ends, p.spec.unit))
     return table("Parameters", ["name", "value", "± std", "95 % from", "to", "unit"], rows)

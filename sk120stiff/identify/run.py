@@ -14,6 +14,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_
 from sk120stiff.identify.absolute.creeping import creeping
 from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
+from sk120stiff.identify.absolute.lacking import beside_lacking
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import known_calibration
@@ -84,7 +85,7 @@ def fit(
         alone = np.zeros(len(calibrated.x))
         told = refuse_another_gravity(calibrated, readings)
         told += refuse_pushed(calibrated, readings, calibrated.jacobian, alone)
-        found = with_model_form(calibrated)
+        found = beside_lacking(with_model_form(calibrated))
         return replace(
             found, notes=(*told, *found.notes, *pounds(found), *creeping(found, readings))
         )

@@ -15,6 +15,7 @@ from sk120stiff.cli.positions import yielding
 from sk120stiff.model import Model
 from sk120stiff.show.scene.building import scene_of_model
 from tests.absolute.arm import Arm, errors, poses, tracked, write
+from tests.absolute.missing_cause import YIELDS, campaign
 from tests.absolute.test_held_out import HELD, WILD, read
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
@@ -98,7 +99,9 @@ def test_an_arm_of_which_play_alone_is_named_has_its_scene(tmp_path: Path) -> No
 
 def test_angles_alone_are_told_in_their_own_unit_everywhere(run, tmp_path: Path) -> None:
     a, rng = poses(50, 3), np.random.default_rng(1)
-    up = errors(1).stands(a)[1][:, 2, 1]
+    arm = errors(1)
+    arm.weighs = False
+    up = arm.stands(a)[1][:, 2, 1]
     read = np.degrees(np.arcsin(up) + 2e-5 * rng.normal(size=len(a)))
     cells = [f"{v:.9f},0,1,0" for v in read[np.abs(read) < 80]]
     a = a[np.abs(read) < 80]
@@ -136,3 +139,16 @@ def test_rows_set_aside_are_told_beside_held_out_numbers(run, tmp_path: Path) ->
     said = " ".join(run(*given, "--out", str(tmp_path / "out")).stdout.split())
     assert "leave out the 3 rows that were set aside" in said
     assert "Not counted: 2 rows that lie far off all others, line 5 (pose P4)" in said
+
+
+def test_identify_says_what_it_cannot_know(run, tmp_path: Path) -> None:
+    """A base yields, and a joint less than not at all: errors, bounds, and what is missing."""
+    arm = errors(1)
+    arm.rocks, arm.compliance[4] = YIELDS, -2e-6
+    campaign(tmp_path, arm, 1)
+    text = run("identify", str(tmp_path / "readings.csv")).stdout
+    (row,) = [line.split() for line in text.splitlines() if "tracker_frame:tracker.x " in line]
+    places = {len(number.partition(".")[2]) for number in row[1:5]}
+    assert len(places) == 1 and min(places) >= 4
+    assert "joint_springs:j5.stiffness comes out rigid (inf) and has no ±" in text
+    assert "Causes that the model does not have" in text and "off level" not in text

@@ -138,10 +138,12 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
     if found.waves:
         said.append(
             f"Waves over the joints' angles show beyond doubt ({', '.join(found.waves)}) and are "
-            "in the model: springs would take them for sag."
+            "in the model: springs would take them for sag. A joint's waves show together; of a "
+            "joint that moves little single values are less sure."
         )
     said += _few(found)
     said += [f"{name} cannot be seen: {why}." for name, why in unseen(found).items()]
+    said += _rigid(found)
     said += [f"{joint} never moves: what is beyond it moves as one." for joint in found.still]
     if unshown := [item for item in found.frozen if not item.inside]:
         said.append(f"{_errors(unshown)} show in none of these readings and are left as they are.")
@@ -158,6 +160,21 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         said.append(f"{lie} set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
     return said
+
+
+def missing_sentences(found: Calibration) -> list[str]:
+    """That something is missing, or may be, as far as anything tells."""
+    if found.lacks:
+        return [
+            "Causes that the model does not have would take more off what is left than chance "
+            "allows, and would move values by as much as the standard errors hold. What is missing "
+            "is what 'sk120stiff explain' looks for."
+        ]
+    if found.exceeds:
+        return ["What is missing is what 'sk120stiff explain' looks for."]
+    if not found.sigma_known:  # its errors rest on the model
+        return ["Whether something is missing is what 'sk120stiff explain' looks for."]
+    return []
 
 
 def _errors(frozen: Sequence[Frozen]) -> str:
@@ -192,6 +209,29 @@ def _implausible(found: Calibration) -> list[str]:
         f"More than is plausible: {listed(told)}. The zero of a joint is elsewhere, another cause "
         "hides behind it, or the fit found no better way: make sure before you use this model."
     ]
+
+
+def _rigid(found: Calibration) -> list[str]:
+    """What it means that a value stands on its bound, or that its interval has no end."""
+    hidden, said = unseen(found), list[str]()
+    held = [p for p, at in zip(found.parameters, found.at_bound, strict=True) if at]
+    soft = [p.name for p in held if isinstance(p.effect, Elastic) and p.name not in hidden]
+    rest = [p.name for p in held if p.name not in (*soft, *hidden)]
+    if soft:
+        come, have, one = ("comes", "has", "it") if len(soft) == 1 else ("come", "have", "them")
+        said.append(
+            f"{listed(soft)} {come} out rigid (inf) and {have} no ±: any softer, and the model "
+            f"would be further off. How soft the readings would let {one} be is the lower end."
+        )
+    if rest:
+        stand = "stands on its bound" if len(rest) == 1 else "stand on their bounds"
+        said.append(f"{listed(rest)} {stand}: the readings would have it beyond, where nothing is.")
+    ends = zip(found.parameters, found.intervals(), strict=True)
+    if open_ := [
+        p.name for p, (_, high) in ends if np.isinf(high) and p.name not in (*hidden, *soft)
+    ]:
+        said.append(f"The readings do not tell {listed(open_)} from rigid (inf).")
+    return said
 
 
 def _hung(found: Calibration, readings: Measurements) -> list[str]:
