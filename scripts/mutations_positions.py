@@ -191,6 +191,14 @@ OF_POSITIONS: tuple[Fault, ...] = (
         zeros_taken_for_positions=("if zero and zeros.sum() >= AGAIN:", "if False:"),
     ),
     *of(
+        "identify/absolute/waves.py", *tests("absolute", "lacking"),
+        another_cause_taken_for_waves=("if loss[k] > most and", "if"),
+    ),
+    *of(
+        "identify/absolute/noise_sizes.py", *tests("absolute", "lacking"),
+        a_tail_taken_for_slips=("FAR * max(size, float(np.quantile(ends[~far & (count > 0)], TAIL)))", "FAR * size"),
+    ),
+    *of(
         "identify/absolute/beside_frames.py", *tests("absolute", "hanging"),
         waves_taken_for_sag=("for kinds in ((JointFrame, TransmissionError), (JointSprings,))", "for kinds in ((JointFrame,), (JointSprings,))"),
     ),
@@ -200,6 +208,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
         springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
         gravity_along_one_axis_alone=("[under(way) for way in (*np.eye(3), np.zeros(3))]", "[under(way) for way in (*np.eye(3)[[2, 2, 2]], np.zeros(3))]"),
         a_load_taken_for_weight=("by_axis = sag.along[:3] - sag.along[3]", "by_axis = sag.along[:3] + 0.0"),
+        a_base_that_yields_taken_for_a_slope=("if lead > 0.0:", "if lead > 1e9:"),
         what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
     ),
     *of(
@@ -217,7 +226,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
         poses_that_tell_nothing_proposed=("if found.after >= TOLD:", "if found.after >= 0.0:"),
     ),
     *of(
-        "explain/absolute/candidates.py", *tests("absolute", "payload_place"),
+        "identify/absolute/other_causes.py", *tests("absolute", "payload_place"),
         payloads_that_hang_where_the_file_says=("(kind.of_payload and hung)", "(kind.of_payload and loaded)"),
         one_mass_that_hangs_elsewhere_twice=("hung = said is not None and said.payload_differs", "hung = said is not None"),
     ),
