@@ -195,6 +195,10 @@ OF_POSITIONS: tuple[Fault, ...] = (
         another_cause_taken_for_waves=("if loss[k] > most and", "if"),
     ),
     *of(
+        "identify/absolute/hanging.py", *tests("absolute", "lacking"),
+        a_base_that_yields_taken_for_a_slope=("if lead > 0.0:", "if lead > 1e9:"),
+    ),
+    *of(
         "identify/absolute/noise_sizes.py", *tests("absolute", "lacking"),
         a_tail_taken_for_slips=("FAR * max(size, float(np.quantile(ends[~far & (count > 0)], TAIL)))", "FAR * size"),
     ),
@@ -208,7 +212,6 @@ OF_POSITIONS: tuple[Fault, ...] = (
         springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
         gravity_along_one_axis_alone=("[under(way) for way in (*np.eye(3), np.zeros(3))]", "[under(way) for way in (*np.eye(3)[[2, 2, 2]], np.zeros(3))]"),
         a_load_taken_for_weight=("by_axis = sag.along[:3] - sag.along[3]", "by_axis = sag.along[:3] + 0.0"),
-        a_base_that_yields_taken_for_a_slope=("if lead > 0.0:", "if lead > 1e9:"),
         what_the_file_states_overruled=("if readings.gravity is not None:", "if readings.gravity is None and readings.path is None:"),
     ),
     *of(

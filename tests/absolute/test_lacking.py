@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
+import sk120stiff as sk
+from sk120stiff.identify.absolute.asked_for import Blocks
 from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.lacking import beside_lacking
+from sk120stiff.identify.absolute.waves import waves_that_show
 from sk120stiff.identify.absolute.words import missing_sentences
 from tests.absolute.arm import errors
 from tests.absolute.missing_cause import SLIPPED, SOFTENS, YIELDS, campaign
@@ -37,3 +42,18 @@ def test_rows_in_which_a_missing_cause_shows_most_are_no_slips(tmp_path: Path) -
     for slip in (0.0, 0.03):
         found = calibrate(*campaign(tmp_path, arm, 3, slip), waves=False)
         assert np.flatnonzero(found.wild).tolist() == [SLIPPED] * (slip > 0.0)
+
+
+@pytest.mark.parametrize(("of_the_other", "shown"), [(20.0, True), (80.0, False)])
+def test_a_wave_may_be_what_the_law_of_a_stronger_cause_leaves(
+    monkeypatch: pytest.MonkeyPatch, of_the_other: float, shown: bool
+) -> None:
+    robot = sk.load_robot("motoman_sk120")
+    wave = sk.effect(robot, "transmission_error", "joint_2_l")
+    other = sk.effect(robot, "base_rocking")
+    blocks = SimpleNamespace(
+        causes=(wave, other), asked_for=lambda: [0, 1], sure_of=lambda _k, _chosen: True,
+        losses=lambda _chosen: {0: 40.0, 1: of_the_other},
+    )  # fmt: skip
+    monkeypatch.setattr(Blocks, "of", classmethod(lambda *_: blocks))
+    assert waves_that_show(None, sk.CATALOGUE) == ((wave,) if shown else ())  # type: ignore[arg-type]
