@@ -81,8 +81,7 @@ def K_C_by_loops(robot: Robot, a: Array, wrench: Array, point: Array) -> tuple[A
     """J from Pinocchio, and K_C entry by entry from its columns; one pose."""
     motion = robot.coupling.motion(a)
     chain = robot.mechanism().chain
-    at_zero = pinocchios(robot.tree, motion.q, robot.tool_frame, point)
-    columns = at_zero[:, chain.coordinates]
+    columns = pinocchios(robot.tree, motion.q, robot.tool_frame, point)[:, chain.coordinates]
     F, M = wrench[:3], wrench[3:]
     m = columns.shape[1]
     K_C = np.zeros((m, m))
