@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from sk120stiff.arrays import on_one_thread
+from sk120stiff.effects import CATALOGUE
 from sk120stiff.errors import InputError, listed
+from sk120stiff.identify.absolute.asked_for import Blocks
 from sk120stiff.identify.absolute.beside_frames import without_springs
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.absolute.creeping import creeping
@@ -82,9 +82,9 @@ def fit(
             placed = calibrate(rigid, readings, geometry=False, waves=False, shared=False)
             refuse_other_forces(placed, readings)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
-        alone = np.zeros(len(calibrated.x))
         told = refuse_another_gravity(calibrated, readings)
-        told += refuse_pushed(calibrated, readings, calibrated.jacobian, alone)
+        beside = Blocks.of(calibrated, CATALOGUE).beside_loads(calibrated.unit)
+        told += refuse_pushed(calibrated, readings, *beside)
         found = beside_lacking(with_model_form(calibrated))
         return replace(
             found, notes=(*told, *found.notes, *pounds(found), *creeping(found, readings))

@@ -66,3 +66,17 @@ def test_its_file_says_which_it_is(tmp_path: Path) -> None:
     hangs = np.tile(STATED, 30) == 80.0
     assert np.allclose(np.linalg.norm(weight[hangs], axis=1), 9.80665)
     assert not weight[~hangs].any()
+
+
+def test_a_payload_hung_from_some_row_on_is_no_tracker_that_moved(tmp_path: Path) -> None:
+    """All poses under one payload, then all under the next, which is heavier than stated."""
+    mass = np.repeat(STATED, 30)
+    arm = _with(payload=(np.where(mass == 80.0, 88.0, mass), np.zeros(3)))
+    arm.compliance = np.array([0.0, 1 / 8e5, 1 / 5e5, 0.0, 0.0, 0.0])
+    a = np.tile(poses(30, 4), (3, 1))
+    x = tracked(arm.stands(a)[0]) + SIGMA * np.random.default_rng(1).normal(size=(90, 3))
+    path = write(tmp_path, a, x, SAID, more=",payload[kg]", cells=[f"{m:g}" for m in mass])
+    robot = sk.load_robot(tmp_path / "six.urdf", base="base", tool="tool")
+    found = sk.fit(sk.base_model(robot), sk.read(path))
+    assert not any("looks moved" in note for note in found.notes)
+    assert "payload_mass:tool" in found.lacks

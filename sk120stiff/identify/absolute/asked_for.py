@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask, lengths_of
-from sk120stiff.effects import Catalogue, Effect, referred
+from sk120stiff.effects import Catalogue, Effect, LoadError, referred
 from sk120stiff.identify.absolute.left_out import COUNTED
 from sk120stiff.identify.absolute.noise_sizes import of_poses
 from sk120stiff.identify.absolute.other_causes import beside, causes_at, slopes
@@ -73,6 +73,20 @@ class Blocks:
             found.residual,
             problem.pose_of_channels,
         )
+
+    def beside_loads(self, unit: float) -> tuple[Array, Array]:
+        """Columns (M, P + K) of estimates and of errors of loads, and their inverse variances.
+
+        Payloads are hung one after the other: what is wrong of one begins at a row.
+
+        Args:
+            unit: What is left, which the variances are in units of.
+        """
+        loads = [k for k, cause in enumerate(self.causes) if isinstance(cause, LoadError)]
+        whole = [self.whole[k] for k in loads]
+        prior = [np.zeros(self.base.shape[1])]
+        prior += [np.full(each.shape[1], unit**2) for each in whole]
+        return np.hstack([self.base, *whole]), np.concatenate(prior)
 
     def asked_for(self) -> list[int]:
         """Causes that lower the BIC clearly, one after the other, each beside all others."""

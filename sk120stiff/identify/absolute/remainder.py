@@ -168,7 +168,7 @@ def remainder_sentences(final: Calibration) -> list[str]:
             f"law explains: {own_course}"
         )
     chance = chance_of_noise(final)
-    alone = stated and final.form is None and not final.problem.common
+    alone = stated and not (final.form or final.problem.common or final.lacks)
     if alone and chance is not None and chance < LEVEL:
         square, freedom = final.judged
         said.append(
