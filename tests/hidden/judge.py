@@ -132,6 +132,23 @@ def as_classes(truth: dict[str, Any], answer: Answer, share: float) -> float:
     return min(share, 1.0)
 
 
+def told_at_best(truth: dict[str, Any]) -> float:
+    """The share of an answer that gives every cause as the set that these readings tell it from.
+
+    The set holds what lies less than `TOLD_APART` of the noise from the cause; of rivals the
+    nearest eight are known.
+    """
+    share = 1.0
+    for entry in truth["effects"]:
+        near = {
+            identity(rival["name"], rival["where"])
+            for rival in entry["rivals"]
+            if rival["separation"] < TOLD_APART
+        } - {identity(entry["name"], entry["where"])}
+        share /= 1 + len(near)
+    return share
+
+
 def kin(name: str) -> frozenset[str]:
     """Identities of the whole family of an identity, at its place."""
     own, _, where = name.partition(":")

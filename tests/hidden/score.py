@@ -19,7 +19,18 @@ import numpy as np
 from .answers import Answer, identity, read_answer, read_prediction_errors, read_predictions
 from .calibration import calibration, reliability, stated
 from .discrimination import tells_apart
-from .judge import ALIKE, Mark, as_classes, coverage, foretold, heldout_ratio, kin, mark
+from .judge import (
+    ALIKE,
+    TOLD_APART,
+    Mark,
+    as_classes,
+    coverage,
+    foretold,
+    heldout_ratio,
+    kin,
+    mark,
+    told_at_best,
+)
 from .run import digest
 
 # level -> (content, least share right or None, greatest share of cases with a wrong name or None)
@@ -110,6 +121,7 @@ def line(level: str, cases: list[tuple[dict[str, Any], Answer, Mark]]) -> dict[s
         "verdicts": dict(Counter(answer.verdict for _, answer, _ in cases)),
         "right": right,
         "right_as_classes": sum(classes) / count,
+        "told_at_best": sum(told_at_best(truth) for truth, _, _ in cases) / count,
         "error": float(np.sqrt(max(right * (1 - right), 0.25 / count) / count)),
         "wrong": wrong,
         "points": sum(m.points for m in marks) / count,
@@ -232,6 +244,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(
                 f"{row['level']}: {_percent(row['right_as_classes'])} % right where causes that "
                 f"lie less than {ALIKE:g} of the noise apart count as one"
+            )
+    for row in rows:
+        if row["level"] == "L9":
+            print(
+                "L9: an answer that gives each cause as the set of what lies less than "
+                f"{TOLD_APART:g} of the noise from it would be {_percent(row['told_at_best'])} % "
+                "right"
             )
     if ordinary:
         print(pace(ordinary))

@@ -22,7 +22,7 @@ from tests.hidden.answers import (
 from tests.hidden.discrimination import tells_apart
 from tests.hidden.generator.build import build
 from tests.hidden.generator.design import plan
-from tests.hidden.judge import as_classes, coverage, foretold, heldout_ratio, mark
+from tests.hidden.judge import as_classes, coverage, foretold, heldout_ratio, mark, told_at_best
 from tests.hidden.make_cases import counts, names
 
 TILT = {
@@ -355,3 +355,10 @@ def test_an_answer_that_depends_on_its_process_is_told(tmp_path, twin):
     frozen = json.loads((tmp_path / "frozen.json").read_text())
     assert frozen["again"] == 1
     assert frozen["otherwise"] == ([] if twin == "{}" else ["case_0000"])
+
+
+def test_at_best_a_set_is_told_where_readings_tell_no_more() -> None:
+    assert told_at_best(truth("L9", TILT, ROCK)) == 0.5  # what lies 20 of the noise apart is told
+    near = {**ROCK, "rivals": [{**TILT["rivals"][0], "separation": 3.2}] * 2}
+    assert told_at_best(truth("L9", near)) == 0.5  # one name twice is one
+    assert told_at_best(truth("L9", near, TILT)) == 0.25
