@@ -20,11 +20,12 @@ from sk120stiff.robot.anatomy import arm_length
 #: Softest and stiffest usual drive of a base joint, by the arm's stretched length. Orders of
 #: magnitude: a gear winds up by one to a few mrad at its rated torque, and rated torque goes with
 #: payload times reach. Measured: 4.0e5, 9.4e5, 1.4e6 on 2.9 m and 120 kg (the 2005 paper), 0.9e6 to
-#: 2.7e6 on 2.9 m and 210 kg (public readings). Wide, for light arms and industrial ones share
+#: 2.7e6 on 2.9 m and 210 kg (public readings). Gears of industrial arms of 1 m, by catalogue: 1.7e5
+#: (RV-20E, 49 N·m per arc minute). Wide, for light arms and industrial ones share
 #: lengths, and only a doubt follows from it.
 USUAL = (
     (0.5, 1e3, 2e4),  # payload 1 kg
-    (1.0, 4e3, 1e5),  # 3 to 7 kg
+    (1.0, 4e3, 2.5e5),  # 3 to 20 kg
     (1.5, 1.2e4, 4e5),  # 10 to 20 kg
     (2.0, 8e4, 1e6),  # 30 to 60 kg
     (2.9, 2.5e5, 3.5e6),  # 120 to 210 kg

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -21,6 +21,15 @@ SAME = 1e-3  # share by which masses may differ that are one payload
 OFF = 0.03  # usual share by which a payload is off that nobody weighed
 FARTHEST = 0.5  # of what is stated
 NAME = re.compile(r"mass_(\d+(?:\.\d+)?)")
+
+
+def distinct(masses: Iterable[float]) -> tuple[float, ...]:
+    """Payloads [kg] in ascending order; what differs by a rounding is one."""
+    found: list[float] = []
+    for mass in sorted(m for m in masses if m > 0.0):
+        if not found or mass - found[-1] > SAME * mass:
+            found.append(float(mass))
+    return tuple(found)
 
 
 @dataclass(frozen=True)
@@ -82,7 +91,8 @@ class PayloadMass(LoadError):
 
     def applies_to(self, load_cases: LoadCases) -> bool:
         """Of one payload alone nothing but the weight of the arm tells how heavy it is."""
-        return super().applies_to(load_cases) and len(self.masses) > 1
+        several = len(self.masses) > 1 or not self.masses  # of a file, which names one of them
+        return super().applies_to(load_cases) and several
 
     @cached_property
     def generators(self) -> Array:
@@ -94,7 +104,7 @@ class PayloadMass(LoadError):
         out = np.zeros((load_cases.count, 6, 1))
         if load_cases.payload is None or load_cases.payload_point is None:
             return out
-        hangs = np.abs(load_cases.payload - self.stated) <= SAME * self.stated
+        hangs = np.abs(load_cases.payload - self.stated) <= 2.0 * SAME * self.stated
         gravity = np.einsum("nji,j->ni", load_cases.rotation, load_cases.robot.gravity_in_base)
         weight = gravity * hangs[:, None]
         out[:, :3, 0] = weight

@@ -21,6 +21,7 @@ from sk120stiff.robot.rotations import homogeneous, joint_motion
 from sk120stiff.robot.visuals import visuals
 from sk120stiff.stiffness.elastic import are_springs, stiffness_of
 
+LEAST = 0.01  # of a stated inertia, that a piece has of its own at least
 _SMALL = 1e-12  # share of a row below which a number is a zero that was computed
 
 Place = tuple[int, Array]  # a body, and a (4, 4) placement on it
@@ -155,7 +156,8 @@ class _Builder:
         virtual = {joint.name: joint for joint in self.mechanism.virtual}
         at, pending, since, link = 0, np.eye(4), np.eye(4), ""
         whole = inertia = np.zeros((3, 3))
-        pieces = _pieces(chain, virtual)
+        turn: Array = np.eye(3)
+        share, spread = _pieces(chain, virtual)
         for e, name in enumerate(chain.names):
             pending = pending @ chain.placements[e]
             since = since @ chain.placements[e]
@@ -174,13 +176,13 @@ class _Builder:
                     self.places[link] = (at, pending @ np.linalg.inv(since))
             else:
                 link, since, whole = robot.document.by_name[name].child, np.eye(4), next(inertias)
-                inertia = whole
+                inertia, turn = whole, np.eye(3)
                 pending = pending @ joint_motion(axis, turns, self.zeros[name])
                 at, pending = self._real(name, at, pending, axis, turns)
                 self.places[link] = (at, pending)
             if chain.masses[e] > 0.0:
                 mass = self.heavier * float(chain.masses[e])
-                own = self.heavier * pieces[e] * inertia
+                own = self.heavier * share[e] * _of_pieces(inertia, turn.T @ spread[e] @ turn)
                 self._weigh(at, pending, mass, chain.centres[e], own)
         tip = pending @ chain.placements[-1]
         last = robot.tree.body(robot.tool_frame)
@@ -300,17 +302,40 @@ class _Builder:
         return tuple(tied)
 
 
-def _pieces(chain: Chain, virtual: Collection[str]) -> Array:
-    """(m,) inertia of what each joint carries over that of its whole link, of which beams are cut.
+def _pieces(chain: Chain, virtual: Collection[str]) -> tuple[Array, Array]:
+    """What each joint carries of its link, of which beams are cut.
 
-    As of a rod: one of n equal pieces has 1/n³ of it. What they have more about the whole link's
-    centre lies in where they are.
+    Returns:
+        share, spread: (m,) share of the link's mass, and (m, 3, 3) second moment [kg·m²] of all its
+            pieces as points about the link's centre, axes of the link.
     """
     body = np.cumsum([name not in virtual for name in chain.names])
     masses = np.bincount(body, chain.masses)[body]
-    count = np.bincount(body, chain.masses > 0.0)[body]
     share = np.divide(chain.masses, masses, out=np.zeros(chain.m), where=masses > 0.0)
-    return np.asarray(share / np.maximum(count, 1) ** 2)
+    at, own = np.empty((chain.m, 3)), np.eye(4)
+    for e, name in enumerate(chain.names):
+        own = own @ chain.placements[e] if name in virtual else np.eye(4)
+        at[e] = own[:3, :3] @ chain.centres[e] + own[:3, 3]
+    spread = np.zeros((chain.m, 3, 3))
+    for link in np.unique(body):
+        here = body == link
+        off = at[here] - share[here] @ at[here]
+        moments = np.einsum("pi,pi->p", off, off)[:, None, None] * np.eye(3)
+        moments = moments - np.einsum("pi,pj->pij", off, off)
+        spread[here] = np.einsum("p,pij->ij", chain.masses[here], moments)
+    return share, spread
+
+
+def _of_pieces(whole: Array, spread: Array) -> Array:
+    """(3, 3) inertia that the pieces of a link have of their own, together [kg·m²].
+
+    What is left of the link's beside where they are; of a link whose inertia is stated smaller than
+    that, a part of what is stated, as of any body.
+    """
+    left = whole - spread
+    values = np.linalg.eigvalsh(left)
+    body = values[0] > LEAST * np.trace(whole) and values[0] + values[1] >= values[2]
+    return np.asarray(left if body else LEAST * whole)
 
 
 def _modes(K: Array) -> tuple[list[float], list[list[float]]]:

@@ -1,14 +1,16 @@
 """Suspects are the catalogue's elastic effects, set free: columns against exact sensitivities."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 import pytest
 
-from sk120stiff import CATALOGUE, Model, load_robot
+from sk120stiff import CATALOGUE, Model, base_model, load_robot
 from sk120stiff.effects import LoadCases, effect, load_cases_of
+from sk120stiff.effects.joint_springs import JointSprings
 from sk120stiff.effects.joint_tilt import JointTilt
+from sk120stiff.explain.localise.suspects import suspects_of
 from sk120stiff.explain.localise.yielding import yielding
 from tests.explain.readings import hidden
 
@@ -61,3 +63,31 @@ def test_an_effect_from_outside_is_a_suspect_too(cases: LoadCases) -> None:
     names = [each.name for each in yielding(cases, CATALOGUE + Clamp)]
     assert "the moment that the clamp of joint_2_l holds" in names
     assert "the moment that the clamp of joint_2_l holds" not in [e.name for e in yielding(cases)]
+
+
+@pytest.mark.parametrize("which", ["hung weights", "a plane", "no load at all"])
+def test_columns_do_not_go_by_what_was_pulled(cases: LoadCases, which: str) -> None:
+    """Weights that hang pull along z alone, so nothing tips the base about z; columns stay."""
+    wrench = np.zeros_like(cases.wrench)
+    wrench[:, 2] = -400.0 if which != "no load at all" else 0.0
+    wrench[:, 0] = 100.0 if which == "a plane" else 0.0
+    a = np.where(np.isin(np.arange(cases.robot.n), (0, 3, 5)), 0.0, cases.a)
+    hung = replace(cases, wrench=wrench, a=a if which == "a plane" else cases.a)
+    usual = {each.name: each for each in yielding(cases)}
+    model = base_model(cases.robot)
+    assert model is not None
+    every = suspects_of(model, hung, np.zeros((cases.count, 3)))
+    for each in yielding(hung):
+        assert each.columns.shape == usual[each.name].columns.shape
+        assert each.carried.shape == usual[each.name].carried.shape
+    assert all(np.isfinite(each.columns).all() for each in every)
+
+
+def test_an_effect_of_a_motor_is_a_suspect_too(cases: LoadCases) -> None:
+    @dataclass(frozen=True)
+    class Motor(JointSprings):
+        name: ClassVar[str] = "motor"
+        yields_under: ClassVar[str] = "drives {where}"
+
+    names = [each.name for each in yielding(cases, CATALOGUE + Motor)]
+    assert "the moment that drives joint_2_l" in names

@@ -81,6 +81,14 @@ def test_what_a_joint_carries_does_not_go_by_the_order_of_names() -> None:
         assert cut.masses[near + 1 :].sum() == pytest.approx(0.5 * MASS)
 
 
+@pytest.mark.parametrize("share", [1e-17, 0.1 + 0.2 - 0.3, 1.0 - 1e-16, 0.7 - 1e-17])
+def test_rounding_carries_nothing(share: float) -> None:
+    """A mass of rounding is none: physics engines refuse it."""
+    for centre in (-0.2, 0.2, 0.85, 1.3):
+        cut = cuts(arm(centre).mechanism().chain, [share])
+        assert ((cut.masses == 0.0) | (cut.masses > 1e-6)).all()
+
+
 def cuts(chain: Chain, places: list[float]) -> Chain:
     virtual = []
     for k, share in enumerate(places):

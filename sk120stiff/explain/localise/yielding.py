@@ -43,14 +43,26 @@ def _yielding(load_cases: LoadCases, catalogue: Catalogue) -> Iterator[Suspect]:
     J = assembly.mechanism.screws(z, load_cases.point).linear_jacobian  # (N, 3, n)
     torque = assembly.mechanism.screws(z, load_cases.force_point).torques(load_cases.wrench)
     for effect, part, index in assembly.elastic:
-        moves = effect.by_parameter(torque[:, index], load_cases, np.zeros(part.stop - part.start))
-        turns = np.array([joint.revolute for joint in effect.virtual_joints(robot)])
+        known = np.zeros(part.stop - part.start)
+        moves = effect.by_parameter(torque[:, index], load_cases, known)
+        acts = effect.by_parameter(np.ones((load_cases.count, len(index))), load_cases, known)
+        turns = _turning(effect, robot)
         for what, own in (("moment", turns), ("force", ~turns)):
-            if moves[:, own].any():
+            if own.any():
+                used = np.any(acts[:, own], axis=(0, 1))
                 name = f"the {what} that {effect.yields_under.format(where=effect.where)}"
                 yield _suspect(
-                    name, effect, robot, J[:, :, index[own]], torque[:, index[own]], moves[:, own]
-                )
+                    name, effect, robot, J[:, :, index[own]], torque[:, index[own]],
+                    moves[:, own][:, :, used],
+                )  # fmt: skip
+
+
+def _turning(effect: Elastic, robot: Robot) -> Mask:
+    """(k,) which of an effect's coordinates turn; the others shift."""
+    turns = {joint.name: joint.revolute for joint in effect.virtual_joints(robot)}
+    motors = zip(robot.actuated, robot.prismatic, strict=True)
+    turns |= {name: not slides for name, slides in motors}
+    return np.array([turns[name] for name in effect.coordinates(robot)], dtype=bool)
 
 
 def _free_forms(robot: Robot, catalogue: Catalogue) -> tuple[Elastic, ...]:
@@ -67,20 +79,19 @@ def _free_forms(robot: Robot, catalogue: Catalogue) -> tuple[Elastic, ...]:
 def _suspect(
     name: str, effect: Elastic, robot: Robot, J: Array, torque: Array, moves: Array
 ) -> Suspect:
-    """One of an effect's coordinates that turn, or of those that shift.
+    """An effect's coordinates that turn, or those that shift.
 
     Args:
         name: Completes the sentence "The gap goes with ...".
         effect, robot: Whose it is.
         J: (N, 3, k) shift of the point by these coordinates.
         torque: (N, k) load on them [N·m or N].
-        moves: (N, k, P) what they do per unit of each parameter.
+        moves: (N, k, P) what they do per unit of each parameter that moves them.
     """
-    used: Mask = np.any(moves, axis=(0, 1))
-    columns = J @ moves[:, :, used]
-    load = torque if torque.shape[1] == used.sum() else np.zeros((0, 0))
+    _, count, free = moves.shape
+    load = torque if count == free else np.zeros((0, 0))
     unit = "moment there [N·m]" if name.startswith("the moment") else "force there [N]"
-    size = np.linalg.norm(torque, axis=1) / np.sqrt(torque.shape[1] / max(used.sum(), 1))
+    size = np.linalg.norm(torque, axis=1) / np.sqrt(count / max(free, 1))
     general = effect.special_case_of(robot)
     frees = (effect.id, *([] if general is None else [general]))
-    return Suspect("place", name, columns, size, unit, carried=load, frees=frees)
+    return Suspect("place", name, J @ moves, size, unit, carried=load, frees=frees)

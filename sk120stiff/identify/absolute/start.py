@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Catalogue, Elastic
 from sk120stiff.effects.options import Options
+from sk120stiff.effects.payload_mass import distinct
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import Placing
@@ -28,7 +29,7 @@ def options_of(readings: Measurements) -> Options:
         stations=("",) if said is None else said.stood[0],
         thermal=said is not None and said.temperature is not None,
         rotations=said is not None and said.channels.rotation is not None,
-        masses=() if said is None else tuple(sorted({float(m) for m in said.payload if m > 0.0})),
+        masses=() if said is None else distinct(said.payload.tolist()),
         hung=said is not None and bool(said.payload.any()) and not readings.wrench.any(),
     )
 

@@ -75,7 +75,7 @@ def by_time(points: Sheet, other: Sheet, order: DateOrder | None = None) -> ByTi
         return None
     if len(a) < FEWEST or len(b) < 2:
         return f"fewer than {FEWEST} readings do not tell how far the clocks are apart"
-    step, own = float(np.median(np.diff(np.sort(b)))), float(np.median(np.diff(np.sort(a))))
+    step, own = _step(b), _step(a)
     dense = step <= DENSE * own
     same = _same_time(mine, theirs, order)
     shift = _shift(a, b, step) if len(b) <= MOST and not dense else None
@@ -96,6 +96,12 @@ def by_time(points: Sheet, other: Sheet, order: DateOrder | None = None) -> ByTi
     absolute = apart - (same or 0.0)
     shown = float(np.median(absolute if same is not None else apart))
     return ByTime(rows, others, shown, float(np.ptp(apart)), headers, dense)
+
+
+def _step(clock: Array) -> float:
+    """Usual time between stamps [s]; rows of one stamp are not apart. Zero: all have one."""
+    steps = np.diff(np.unique(clock))
+    return float(np.median(steps)) if len(steps) else 0.0
 
 
 def clock_of(sheet: Sheet) -> tuple[Column, ...]:

@@ -18,6 +18,8 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.robot.rotations import crossed
 
+ROUNDING = 1e-9  # of a link's mass or length, which is none of it
+
 
 @dataclass(frozen=True, eq=False)
 class VirtualJoint:
@@ -161,7 +163,8 @@ class Chain:
         parts = []
         for (mass, moment), (rest, further) in pairwise(left):
             own = mass - rest
-            parts.append((own, (moment - further) / own if own else np.zeros(3)))
+            some = own > ROUNDING * self.masses[body]
+            parts.append((own, (moment - further) / own) if some else (0.0, np.zeros(3)))
         return parts
 
     def _beyond(self, body: int, share: float) -> tuple[float, Array]:
@@ -173,13 +176,13 @@ class Chain:
         """
         mass, centre = float(self.masses[body]), self.centres[body]
         middle = self._along(body, centre)
-        if share <= 0.0 or middle >= 1.0:  # all that is not mounted at the next joint
-            return (mass, mass * centre) if share < 1.0 else (0.0, np.zeros(3))
-        if middle <= 0.0:  # it weighs behind the joint
-            return 0.0, np.zeros(3)
         first, last = max(0.0, 2.0 * middle - 1.0), min(1.0, 2.0 * middle)
+        if middle >= 1.0:  # all that is not mounted at the next joint
+            first = last = 1.0 - ROUNDING
+        if share <= 0.0 or share < first:
+            return mass, mass * centre
         begin = max(share, first)
-        if begin >= last:
+        if middle <= 0.0 or begin >= last:  # it weighs behind the joint, or behind the cut
             return 0.0, np.zeros(3)
         part = mass * (last - begin) / (last - first)
         span = self.placements[body + 1, :3, 3]
