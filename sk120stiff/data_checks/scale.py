@@ -130,7 +130,7 @@ def _doubt(said: str, times: float, low: float, high: float) -> Scale | None:
         for unit, soft, stiff in UNITS
     }
     likely = [words for words in sorted(off, key=lambda w: off[w]) if off[words] < np.log(reach)]
-    guess = f" Likely: {'; or '.join(likely[:3])}." if likely else ""
+    guess = f" Likely: {'; or '.join(likely[:4])}." if likely else ""
     return Scale(
         f"{said}: check the units of displacement and force.{guess} All springs together, the "
         "force's scale and the reading's scale are one number to these readings: which of them is "

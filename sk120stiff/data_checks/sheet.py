@@ -14,6 +14,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.data_checks.passive import unit_displacements, unit_turns
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import Frame
+from sk120stiff.measurements.sensor_axes import Rpy
 from sk120stiff.robot import Robot, Screws
 
 MOST = 2000  # rows that tell what is wrong with a file as well as all of them
@@ -32,6 +33,7 @@ class Sheet:
         wrench: (N, 6) in axes of `force_frame` [N, N·m].
         displacement: (N, 3) in axes of `displacement_frame` [m]; NaN where not read.
         force_frame, displacement_frame: ``"base"`` or ``"tool"``.
+        sensor_rpy: Roll, pitch, yaw [rad] by which loads were turned into their frame, if at all.
         point, force_point: (3,) in the tool frame [m].
         kept: (N,) rows that are in use.
         stretch: Mean logarithm, over all numbers read, of the factors by which corrections changed
@@ -48,6 +50,7 @@ class Sheet:
     force_point: Array
     kept: Mask
     stretch: float = 0.0
+    sensor_rpy: Rpy | None = None
 
     @property
     def measured(self) -> Array:
@@ -203,4 +206,5 @@ def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
         point=measurements.point,
         force_point=measurements.force_point,
         kept=measurements.use & measurements.wrench.any(axis=1),
+        sensor_rpy=measurements.sensor_rpy,
     ).in_part()

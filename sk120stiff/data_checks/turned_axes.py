@@ -12,11 +12,13 @@ from itertools import combinations, product
 from typing import Literal
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks.correction import Correction
 from sk120stiff.data_checks.sheet import Sheet
 from sk120stiff.measurements.data import Frame
+from sk120stiff.measurements.sensor_axes import Rpy, axes_line
 
 QUARTERS = (1, 2, 3)  # of a turn, as frames and conventions of controllers differ
 ROUNDING = 1e-12  # of a cosine
@@ -28,10 +30,10 @@ def quarter_turns(sheet: Sheet) -> Iterator[Correction]:
     """Axes and zeros that are off by quarters of a turn."""
     for quarter in QUARTERS:
         for what in _turned_by(sheet):
-            yield turned(quarter * np.pi / 2, what, sheet.force_frame)
+            yield turned(quarter * np.pi / 2, what, sheet.force_frame, sheet.sensor_rpy)
     for axis in range(2):
-        yield _half_about(axis, "displacement")
-        yield _half_about(axis, "force")
+        yield _half_about(axis, "displacement", sheet)
+        yield _half_about(axis, "force", sheet)
     for zeros in _zeros(sheet):
         yield from zeros
 
@@ -51,7 +53,7 @@ def _zeros(sheet: Sheet) -> list[list[Correction]]:
     ]
 
 
-def _half_about(axis: int, what: Literal["displacement", "force"]) -> Correction:
+def _half_about(axis: int, what: Literal["displacement", "force"], sheet: Sheet) -> Correction:
     """Displacements, or loads, in axes turned by half a turn about x or y: their z points down."""
     signs = np.where(np.arange(3) == axis, 1.0, -1.0)
     names = [f"{what[0]}{name}" for k, name in enumerate("xyz") if k != axis]
@@ -65,7 +67,11 @@ def _half_about(axis: int, what: Literal["displacement", "force"]) -> Correction
             return replace(sheet, displacement=sheet.displacement * signs)
         return replace(sheet, wrench=sheet.wrench * np.tile(signs, 2))
 
-    return Correction(said, f"Negate the columns {names[0]} and {names[1]}.", mend)
+    remedy = f"Negate the columns {names[0]} and {names[1]}."
+    if what == "force" and sheet.sensor_rpy is not None:
+        half = Rotation.from_rotvec(np.pi * np.eye(3)[axis])
+        remedy = f"Write '{axes_line(sheet.force_frame, half, sheet.sensor_rpy)}'."
+    return Correction(said, remedy, mend)
 
 
 def by_any_angle(sheet: Sheet, left: Callable[[Correction], float]) -> list[Correction]:
@@ -75,21 +81,21 @@ def by_any_angle(sheet: Sheet, left: Callable[[Correction], float]) -> list[Corr
         sheet: The readings as they stand.
         left: What is left with a correction.
     """
-    frame = sheet.force_frame
+    frame, rpy = sheet.force_frame, sheet.sensor_rpy
     read = not np.isnan(sheet.measured[:, :2]).any()
     out = []
     for what in _turned_by(sheet) if read else ():
         angle, step = 0.0, COARSE
         tried = np.arange(-np.pi, np.pi, step)
         while step >= FINE:
-            angle = float(min(tried, key=lambda each: left(turned(each, what, frame))))
+            angle = float(min(tried, key=lambda each: left(turned(each, what, frame, rpy))))
             step *= 0.5
             tried = np.array([angle - step, angle, angle + step])
-        out.append(turned(angle, what, frame))
+        out.append(turned(angle, what, frame, rpy))
     return out
 
 
-def turned(angle: float, what: What, frame: Frame) -> Correction:
+def turned(angle: float, what: What, frame: Frame, rpy: Rpy | None = None) -> Correction:
     """Displacements, loads, or both are stated in axes turned by an angle about the base's z.
 
     Loads in axes of the tool (`frame`) about the tool's: a sensor may be screwed on turned.
@@ -100,13 +106,13 @@ def turned(angle: float, what: What, frame: Frame) -> Correction:
         f"{looks.get(what, 'the force looks')} stated in axes that are turned by {degrees:g} deg "
         f"about z of the {'base' if what != 'f' else frame} frame"
     )
+    line = axes_line(frame, Rotation.from_euler("z", degrees, degrees=True), rpy)
     remedy = {
         "both": "Choose the base frame that they are stated in (base_frame, --base), or turn them "
         "by as much.",
         "d": "Turn the displacement by as much, into axes of the base frame.",
-        "f": f"Write 'force: {{frame: {frame}, rpy: [0, 0, {degrees:g}], rpy_unit: deg}}' into the "
-        "YAML file; of a file with positions in the same axes, import it with --forces "
-        "instrument.",
+        "f": f"Write '{line}' into the YAML file, beside what else stands there of the force; of a "
+        "file with positions in the same axes, import it with --forces instrument.",
     }
 
     def mend(sheet: Sheet) -> Sheet:

@@ -24,6 +24,7 @@ from sk120stiff.measurements.poses import (
     refuse_joint_column,
     rows_by_label,
 )
+from sk120stiff.measurements.sensor_axes import Rpy
 from sk120stiff.measurements.zero import since_zero
 
 Frame = Literal["base", "tool"]
@@ -46,6 +47,7 @@ class Measurements(Tabular):
             ``"length"``.
         joints: (N, n) coordinates, rad or m.
         wrench: (N, 6) force and moment as reported, N and N·m, in axes of `force_frame`.
+        sensor_rpy: Roll, pitch, yaw [rad] by which they were turned into these; None: not at all.
         displacement: (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; NaN in an
             axis that was not read, None in a plan.
         point, force_point: (3,) measured point and point of attack in the tool frame, m; the force
@@ -92,6 +94,7 @@ class Measurements(Tabular):
     point: Array = field(default_factory=lambda: np.zeros(3))
     force_point: Array = field(default_factory=lambda: np.zeros(0))
     force_frame: Frame = "base"
+    sensor_rpy: Rpy | None = None
     displacement_frame: Frame = "base"
     noise: NoiseStatement = UNSTATED
     zero: Zero = "unknown"

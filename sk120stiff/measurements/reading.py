@@ -22,7 +22,7 @@ from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.rays import along_rays
 from sk120stiff.measurements.rows import SMALLEST_SIGMA, Rows, read_rows
-from sk120stiff.measurements.sensor_axes import in_the_frame
+from sk120stiff.measurements.sensor_axes import in_the_frame, stated_rpy
 from sk120stiff.measurements.subtraction import Displacements, displacements, undisplaced
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.measurements.zero import of_one_reading
@@ -170,6 +170,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         point=point,
         force_point=force_point,
         force_frame=settings.force.frame,
+        sensor_rpy=stated_rpy(file),
         displacement_frame=settings.displacement.frame,
         noise=noise,
         sigma=_sigma_of_rows(rows, found, roles),

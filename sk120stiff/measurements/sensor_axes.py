@@ -16,6 +16,24 @@ if TYPE_CHECKING:
 
 FORCE, MOMENT = slice(3), slice(3, 6)  # of a wrench
 
+Rpy = tuple[float, float, float]  # roll, pitch, yaw of a sensor's axes [rad]
+
+
+def axes_line(frame: str, turn: Rotation, stated: Rpy | None) -> str:
+    """What to write where the axes are turned by `turn` beyond what was stated."""
+    whole = turn * Rotation.from_euler("xyz", stated or (0.0, 0.0, 0.0))
+    rpy = ", ".join(f"{v + 0.0:g}" for v in np.round(whole.as_euler("xyz", degrees=True), 1))
+    return f"force: {{frame: {frame}, rpy: [{rpy}], rpy_unit: deg}}"
+
+
+def stated_rpy(file: SettingsFile) -> Rpy | None:
+    """The turn that the file states; None: none."""
+    said = file.settings.force
+    if said.rpy is None or said.rpy_unit is None:
+        return None
+    rpy = units.to_si(said.rpy, said.rpy_unit, "angle", where=file.place("force.rpy_unit"))
+    return float(rpy[0]), float(rpy[1]), float(rpy[2])
+
 
 def in_the_frame(wrench: Array, file: SettingsFile) -> Array:
     """Forces and moments (N, 6) of the sensor's own axes, turned into those of `force.frame`.
@@ -32,6 +50,5 @@ def in_the_frame(wrench: Array, file: SettingsFile) -> Array:
             where=file.place("force.rpy" if said.rpy is not None else "force.rpy_unit"),
             remedy="Write force: {frame: tool, rpy: [0, 0, 30], rpy_unit: deg}.",
         )
-    rpy = units.to_si(said.rpy, said.rpy_unit, "angle", where=file.place("force.rpy_unit"))
-    turn = Rotation.from_euler("xyz", rpy)
+    turn = Rotation.from_euler("xyz", stated_rpy(file))
     return np.hstack([turn.apply(wrench[:, part]) for part in (FORCE, MOMENT)])

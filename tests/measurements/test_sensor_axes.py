@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
+from sk120stiff.measurements.sensor_axes import axes_line
 from sk120stiff.measurements.writing import write_measurements
 
 HEAD = "pose,q1[deg],fx[N],fy[N],fz[N],mx[N*m],my[N*m],mz[N*m],dx[mm],dy[mm],dz[mm]\n"
@@ -53,3 +54,14 @@ def test_what_is_written_is_in_axes_of_the_frame(tmp_path: Path) -> None:
 def test_half_a_turn_is_refused(tmp_path: Path, force: str, said: str) -> None:
     with pytest.raises(sk.InputError, match=f"(?s){said}"):
         read(tmp_path, force)
+
+
+@pytest.mark.parametrize("stated", [None, (np.pi, 0.0, 0.0), (0.2, -0.4, 0.5)])
+def test_a_further_turn_goes_on_top_of_the_one_that_is_stated(stated, tmp_path: Path) -> None:
+    """The line that a message says, once written, brings both."""
+    further = Rotation.from_euler("z", 30.0, degrees=True)
+    line = axes_line("tool", further, stated)
+    found = read(tmp_path, line.removeprefix("force: "))
+    whole = further * Rotation.from_euler("xyz", stated or (0.0, 0.0, 0.0))
+    assert np.allclose(found.wrench[:, :3], whole.apply(AS_READ[:, :3]), atol=0.5)  # to 0.1 deg
+    assert found.sensor_rpy is not None

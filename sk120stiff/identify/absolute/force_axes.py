@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, two_digits
@@ -18,6 +19,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import Frame
+from sk120stiff.measurements.sensor_axes import Rpy, axes_line
 
 HALF = 0.5  # of the square of what is left, below which other axes must bring it
 BEYOND_DOUBT = 10.0  # logarithm of the odds for them
@@ -67,7 +69,7 @@ def refuse_other_forces(found: Calibration, readings: Measurements) -> None:
     if not best.changes()[0] or odds < BEYOND_DOUBT or least > HALF * left[0]:
         return
     share = f"{two_digits(100.0 * float(np.sqrt(least / left[0])))} %"
-    said, mend = best.words(frames)
+    said, mend = best.words(frames, readings.sensor_rpy)
     raise InputError(
         f"the forces look stated otherwise: {said}, springs leave {share} of the gap that they "
         "leave as the forces stand",
@@ -117,7 +119,7 @@ class _Way:
         turned = abs(self.angle) >= FAR
         return self.other + (self.sign < 0.0) + turned, abs(self.angle)
 
-    def words(self, frames: tuple[Frame, Frame]) -> tuple[str, str]:
+    def words(self, frames: tuple[Frame, Frame], rpy: Rpy | None) -> tuple[str, str]:
         """What they look like, and what mends them."""
         axes = f"axes of the {frames[self.other]}"
         said, mend = [], []
@@ -130,6 +132,9 @@ class _Way:
         if turned:
             said.append(f"turned by {self.angle:g} deg about z of the {frames[self.other]}")
         if self.other or turned:
-            rpy = f", rpy: [0, 0, {self.angle:g}], rpy_unit: deg" if turned else ""
-            mend.append(f"Write 'force: {{frame: {frames[self.other]}{rpy}}}' into the YAML file.")
+            frame, turn = frames[self.other], Rotation.from_euler("z", self.angle, degrees=True)
+            line = f"force: {{frame: {frame}}}"
+            if turned or rpy is not None:
+                line = axes_line(frame, turn, rpy)
+            mend.append(f"Write '{line}' into the YAML file.")
         return f"taken {' and '.join(said)}", " ".join(mend)
