@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -69,6 +69,11 @@ class PayloadMass(LoadError):
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
         """Which payload it was."""
         return Options(shape=tuple(parameters))
+
+    @classmethod
+    def sample(cls) -> Self:
+        """As of a payload of 160 kg."""
+        return cls(cls.place, stated=160.0)
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
