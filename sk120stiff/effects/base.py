@@ -71,6 +71,7 @@ class Effect(ABC):
         twins: Names of effects that some experiments make one with this one, at the same place and
             with either sign (class attribute). It is tried whether the experiment at hand does.
         needs: What readings must hold for its law, in words (class attribute).
+        advice: What to do about it before anything else, a sentence (class attribute).
         calibrated: Its parameters are errors of an instrument that was calibrated: they are no
             larger than usual, whether readings tell them or not (class attribute).
         only_absolute: Positions show it, displacements hardly ever (class attribute).
@@ -104,6 +105,7 @@ class Effect(ABC):
     of_gear: ClassVar[bool] = False
     twins: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[str] = ""
+    advice: ClassVar[str] = ""
     calibrated: ClassVar[bool] = False
     only_absolute: ClassVar[bool] = False
 

@@ -26,7 +26,10 @@ class LinkMasses(Weighing):
     equation: ClassVar[str] = "weight = (1 + s) * weight by the masses of the URDF"
     says: ClassVar[str] = (
         "The arm's links weigh more or less beside the payload than is stated: the masses of the "
-        "URDF are off, or the payload's is, and with it all springs. Weigh the payload."
+        "URDF are off, or the payload's is, and with it all springs."
+    )
+    advice: ClassVar[str] = (
+        "Weigh the payload: only if it weighs what is stated, the springs are what they say."
     )
     axes: ClassVar[str] = "all links alike"
     needs: ClassVar[str] = "positions of an arm that yields under weight, with a payload or load"

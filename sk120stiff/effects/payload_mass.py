@@ -50,8 +50,9 @@ class PayloadMass(LoadError):
     place: ClassVar[str] = "the tool frame"
     equation: ClassVar[str] = "W_true = W + (dm g, (dm c) x g) in rows of that payload"
     says: ClassVar[str] = (
-        "One of the payloads weighs more or less than is stated, and the others do not. Weigh it."
+        "One of the payloads weighs more or less than is stated, and the others do not."
     )
+    advice: ClassVar[str] = "Weigh the payload, and write what it weighs into its rows."
     axes: ClassVar[str] = "where the payload hangs"
     also: ClassVar[str] = "mass_160: of the payload that is stated as 160 kg"
     needs: ClassVar[str] = "positions under two payloads or more that differ"
@@ -88,6 +89,16 @@ class PayloadMass(LoadError):
                 "kg",
             ),
         )  # fmt: skip
+
+    def told(self, values: Mapping[str, float]) -> str:
+        """Which payload it is, and what it weighs."""
+        off = values.get(f"mass_{self.stated:g}")
+        if off is None:
+            return self.sentence()
+        return (
+            f"The payload that is stated as {self.stated:g} kg weighs {self.stated + off:.4g} kg; "
+            "the others weigh what is stated."
+        )
 
     def other_laws(self, load_cases: LoadCases) -> tuple[PayloadMass, ...]:
         """It is another of the payloads."""

@@ -8,6 +8,8 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.effects.payload_mass import PayloadMass
 from sk120stiff.explain.absolute.explained import Explained
+from sk120stiff.explain.absolute.next_step import next_step_of_positions
+from sk120stiff.explain.findings import sentence_in
 from tests.absolute.arm import errors, poses, tracked, write
 from tests.absolute.test_forms import _with
 from tests.absolute.test_link_masses import SAID, SIGMA
@@ -80,3 +82,12 @@ def test_a_payload_hung_from_some_row_on_is_no_tracker_that_moved(tmp_path: Path
     found = sk.fit(sk.base_model(robot), sk.read(path))
     assert not any("looks moved" in note for note in found.notes)
     assert "payload_mass:tool" in found.lacks
+
+
+def test_what_it_weighs_and_what_to_do_is_said(tmp_path: Path) -> None:
+    found = explained(tmp_path, (0.0, 40.0, 88.0))
+    (named,) = [each for each in found.findings if each.effect.name == "payload_mass"]
+    said = sentence_in(found.final.model, named.effect)
+    assert said.startswith("The payload that is stated as 80 kg weighs 8")
+    assert float(said.partition("weighs ")[2].partition(" kg")[0]) == pytest.approx(88.0, abs=0.5)
+    assert "Weigh the payload" in next_step_of_positions(found)

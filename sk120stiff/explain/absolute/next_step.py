@@ -68,6 +68,7 @@ def next_step_of_positions(answer: Explained) -> str:
             f"What takes off most is {largest}, {share}: look there first if the arm is to be "
             "mended."
         )
+    said += dict.fromkeys(i.effect.advice for i in answer.findings if i.effect.advice)
     if answer.verdict == "ambiguous":
         if answer.following is not None:
             one, other = answer.following.between
