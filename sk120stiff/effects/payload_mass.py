@@ -67,11 +67,6 @@ class PayloadMass(LoadError):
         return cls(where, scale_of(robot), max(told, default=0.0), options.masses)
 
     @classmethod
-    def options_of(cls, parameters: Mapping[str, str]) -> Options:
-        """Which payload it was."""
-        return Options(shape=tuple(parameters))
-
-    @classmethod
     def sample(cls) -> Self:
         """As of a payload of 160 kg."""
         return cls(cls.place, stated=160.0)

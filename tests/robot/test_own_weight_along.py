@@ -56,8 +56,10 @@ def test_a_tapered_beam_sags_as_the_sum_of_its_slices(centre: float, taper: floa
     soft = (1.0 - taper * s) ** -3
     turn = moment * soft / soft.mean() / EI
     slope, fall = sag(arm(centre), LinkBending("beam", taper=taper))
-    assert slope == pytest.approx(turn.mean(), rel=0.05)
-    assert fall == pytest.approx((turn * (1.0 - s)).mean(), rel=0.05)
+    # Three stations have moments up to the second: the slope of a beam that weighs the same
+    # everywhere is exact, where the weight ends halfway it is off by a few per cent.
+    assert slope == pytest.approx(turn.mean(), rel=1e-6 if centre == 0.5 else 0.036)
+    assert fall == pytest.approx((turn * (1.0 - s)).mean(), rel=0.038)
 
 
 def test_what_is_cut_adds_up() -> None:

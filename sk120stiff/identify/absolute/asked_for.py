@@ -101,13 +101,18 @@ class Blocks:
                 break
             chosen.append(best)
             score = tried[best]
-        while chosen:
-            loss = self.losses(chosen)
-            weakest = min(chosen, key=lambda k: loss[k])
-            if loss[weakest] >= CLEAR:
+        return self.at_least(CLEAR, chosen)
+
+    def at_least(self, gain: float, chosen: Sequence[int]) -> list[int]:
+        """Those without which the BIC rises by so much, the weakest gone one after the other."""
+        kept = list(chosen)
+        while kept:
+            loss = self.losses(kept)
+            weakest = min(kept, key=lambda k: loss[k])
+            if loss[weakest] >= gain:
                 break
-            chosen.remove(weakest)
-        return chosen
+            kept.remove(weakest)
+        return kept
 
     def losses(self, chosen: Sequence[int]) -> dict[int, float]:
         """By how much the BIC rises without each of the chosen."""

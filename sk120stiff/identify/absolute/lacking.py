@@ -27,14 +27,8 @@ def beside_lacking(found: Calibration, catalogue: Catalogue = CATALOGUE) -> Cali
     if not np.isfinite(found.unit) or not found.unit:
         return found
     blocks = Blocks.of(found, catalogue)
-    chosen = blocks.asked_for()
-    beyond_doubt = CLEAR + 2.0 * np.log(max(len(blocks.causes), 1))
-    while chosen:
-        loss = blocks.losses(chosen)
-        weakest = min(chosen, key=lambda k: loss[k])
-        if loss[weakest] >= beyond_doubt:
-            break
-        chosen.remove(weakest)
+    beyond_doubt = CLEAR + 2.0 * float(np.log(max(len(blocks.causes), 1)))
+    chosen = blocks.at_least(beyond_doubt, blocks.asked_for())
     if not chosen:
         return found
     foreign = _moved(
