@@ -9,7 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.solve.polish import Minimum, polish
+from sk120stiff.identify.solve.polish import TRIAL, Minimum, polish
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
 from sk120stiff.identify.written import with_values
@@ -43,11 +43,15 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
 
 
 def solve_near(problem: Problem, x: Array) -> Fit:
-    """Solve a problem whose answer lies near scaled values `x` that are known."""
+    """Solve a problem whose answer lies near scaled values `x` that are known.
+
+    It is done when no estimate moves by more than 1e-5 of its error: of a model that is tried, no
+    more is asked.
+    """
     calibrated = bool(np.isfinite(problem.usual).any())
     steps = VALLEY if calibrated else None
     try:
-        found = polish(problem.evaluate, x, problem.bounds, problem.span, steps=steps)
+        found = polish(problem.evaluate, x, problem.bounds, problem.span, faint=TRIAL, steps=steps)
     except Refusal:
         if not calibrated:
             raise
@@ -97,7 +101,7 @@ def _polished_with(problem: Problem, x: Array, rows: Array) -> Minimum:
         residual, jacobian = problem.evaluate(x)
         return np.concatenate([residual, rows @ x]), np.vstack([jacobian, rows])
 
-    best = polish(evaluate, x, problem.bounds, problem.span)
+    best = polish(evaluate, x, problem.bounds, problem.span, faint=TRIAL)
     R = len(best.residual) - len(rows)
     return replace(best, residual=best.residual[:R], jacobian=best.jacobian[:R])
 

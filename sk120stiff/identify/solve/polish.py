@@ -29,6 +29,7 @@ LEARNED = 1e-6  # relative step below which rounding hides the curvature
 SOUND = 0.1  # least curvature over that of Gauss and Newton for which the learned one is trusted
 GRAIN = 1e-9  # relative rounding of a sum of squares of whitened gaps
 FAINT = 1e-10  # change of the predictions, in units of their noise, that is below all rounding
+TRIAL = 1e-5  # step of a trial that is the last, as a share of the noise that is left
 ENOUGH = (
     0.1  # a last step by which no parameter moves by more than this share of its standard error
 )
@@ -59,7 +60,7 @@ def polish(
     bounds: tuple[Array, Array],
     span: Array,
     *,
-    fine: float = FINE,
+    faint: float = 0.0,
     steps: int | None = None,
 ) -> Minimum:
     """Least squares within bounds from a start that is near.
@@ -70,7 +71,8 @@ def polish(
             there.
         bounds: Lower and upper (P,).
         span: (P,) sizes of the parameters over which a change has to show.
-        fine: Relative step at which nothing is left to gain.
+        faint: Step by which the predictions move so little that nothing is left to gain, over the
+            root mean square of the residual. Default: what rounding hides.
         steps: How many there may be. Default: `STEPS`, and four for every parameter.
 
     Raises:
@@ -90,7 +92,8 @@ def polish(
                 break
         step = _newton(jacobian, residual, held, span, curvature)
         size = _size(step, x)
-        if size <= fine or _rounding(size, last, jacobian @ step):
+        least = max(FAINT, faint * _noise(residual))
+        if size <= FINE or _rounding(size, last, jacobian @ step, least):
             wanted = _wants_in(x, residual, jacobian, bounds, held)
             if wanted is None:
                 return Minimum(x, residual, jacobian, held, count)
@@ -113,8 +116,7 @@ def polish(
             x, (residual, jacobian) = new, found
         held |= hits & ((x == bounds[0]) | (x == bounds[1]))
     step = _newton(jacobian, residual, held, span, np.zeros_like(curvature))
-    noise = float(np.linalg.norm(residual)) / np.sqrt(max(len(residual), 1))
-    if float(np.linalg.norm(jacobian @ step)) > ENOUGH * max(noise, 1e-12):
+    if float(np.linalg.norm(jacobian @ step)) > ENOUGH * max(_noise(residual), 1e-12):
         raise Refusal(
             "the least-squares fit did not converge",
             remedy="Free fewer parameters, or leave out the effect that was added last.",
@@ -225,9 +227,14 @@ def _wants_in(
     return int(np.argmax(inward))
 
 
-def _rounding(size: float, last: float, change: Array) -> bool:
-    """The step is as small as rounding lets it become."""
-    return (size <= 1e-9 and size > 0.25 * last) or float(np.linalg.norm(change)) <= FAINT
+def _rounding(size: float, last: float, change: Array, faint: float) -> bool:
+    """The step is as small as rounding lets it become, or as it need be."""
+    return (size <= 1e-9 and size > 0.25 * last) or float(np.linalg.norm(change)) <= faint
+
+
+def _noise(residual: Array) -> float:
+    """Root mean square of the residual."""
+    return float(np.linalg.norm(residual)) / np.sqrt(max(len(residual), 1))
 
 
 def _size(step: Array, x: Array) -> float:

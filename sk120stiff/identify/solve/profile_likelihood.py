@@ -12,7 +12,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
-from sk120stiff.identify.solve.polish import Evaluate, Minimum, polish
+from sk120stiff.identify.solve.polish import TRIAL, Evaluate, Minimum, polish
 
 TRIALS = 20  # values looked at for one end of an interval
 CLOSE = 1e-3  # of the distance that is sought
@@ -92,7 +92,7 @@ class Valley:
 
         far = np.maximum(self.plausible, np.abs(self.x))
         lower, upper = (np.clip(bound, -far, far)[others] for bound in self.bounds)
-        found = polish(evaluate, near[others], (lower, upper), self.span[others], fine=CLOSE**2)
+        found = polish(evaluate, near[others], (lower, upper), self.span[others], faint=TRIAL)
         whole[others] = found.x
         return replace(found, x=whole)
 
