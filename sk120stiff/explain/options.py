@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects, load_cases_of
+from sk120stiff.effects import Effect, all_effects, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -65,16 +65,14 @@ class Options:
         return tuple(said)
 
 
-def with_assumed(
-    model: Model, used: Measurements, assumed: Sequence[str], catalogue: Catalogue = CATALOGUE
-) -> Model:
+def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Model:
     """The model with the effects that the user takes for granted, to be fitted with it."""
-    everything = _everything(model, used, catalogue)
+    everything = _everything(model, used)
     load_cases = load_cases_of(model.robot, used)
     for wanted in assumed:
         found = [effect for effect in everything if _matches(effect, wanted)]
         if not found:
-            raise _unknown(wanted, model, catalogue)
+            raise _unknown(wanted, model)
         needed = ", or ".join(dict.fromkeys(e.needs for e in found if e.needs))
         found = [effect for effect in found if effect.applies_to(load_cases)]
         if not found:
@@ -89,9 +87,7 @@ def with_assumed(
     return model
 
 
-def candidates_for(
-    model: Model, used: Measurements, options: Options, catalogue: Catalogue = CATALOGUE
-) -> tuple[Effect, ...]:
+def candidates_for(model: Model, used: Measurements, options: Options) -> tuple[Effect, ...]:
     """Effects of the catalogue that the readings could show and the user does not exclude.
 
     Offsets of single poses are looked for among at most `POSES_WITH_OFFSETS` poses, unless the
@@ -102,8 +98,8 @@ def candidates_for(
     """
     load_cases = load_cases_of(model.robot, used)
     present = {effect.id for effect in model.effects}
-    everything = _everything(model, used, catalogue)
-    refuse_unknown(everything, options, model, catalogue)
+    everything = _everything(model, used)
+    refuse_unknown(everything, options, model)
     springs = np.isfinite(model.joint_stiffness())
     soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
 
@@ -133,9 +129,7 @@ def candidates_for(
     return found
 
 
-def refuse_unknown(
-    everything: Sequence[Effect], options: Options, model: Model, catalogue: Catalogue
-) -> None:
+def refuse_unknown(everything: Sequence[Effect], options: Options, model: Model) -> None:
     """Refuse names of effects to look for, or to leave out, that do not exist.
 
     Raises:
@@ -143,21 +137,21 @@ def refuse_unknown(
     """
     for wanted in (*options.only, *options.exclude):
         if not any(_matches(effect, wanted) for effect in everything):
-            raise _unknown(wanted, model, catalogue)
+            raise _unknown(wanted, model)
 
 
 def _matches(effect: Effect, wanted: str) -> bool:
     return wanted in (effect.name, effect.id)
 
 
-def _everything(model: Model, used: Measurements, catalogue: Catalogue) -> tuple[Effect, ...]:
+def _everything(model: Model, used: Measurements) -> tuple[Effect, ...]:
     """Every effect of the catalogue wherever it can act."""
     timed = used.time is not None
-    return all_effects(model.robot, poses=used.poses, timed=timed, catalogue=catalogue)
+    return all_effects(model.robot, poses=used.poses, timed=timed, catalogue=model.catalogue)
 
 
-def _unknown(wanted: str, model: Model, catalogue: Catalogue) -> InputError:
+def _unknown(wanted: str, model: Model) -> InputError:
     name, _, where = wanted.partition(":")
-    if name in catalogue:
-        return catalogue.misplaced(name, where, model.robot)
-    return catalogue.unknown(wanted)
+    if name in model.catalogue:
+        return model.catalogue.misplaced(name, where, model.robot)
+    return model.catalogue.unknown(wanted)

@@ -10,7 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect
+from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.run import explain_positions
@@ -59,7 +59,7 @@ def explain(
     *,
     holdout: Measurements | None = None,
     options: Options | None = None,
-    catalogue: Catalogue = CATALOGUE,
+    catalogue: Catalogue | None = None,
     progress: Progress | None = None,
 ) -> Explanation | Explained:
     """Find where model and readings disagree, name what is missing, add it, judge the rest.
@@ -72,7 +72,8 @@ def explain(
         measurements: Readings to be explained.
         holdout: Readings of other poses, kept out of everything; the gap on them is reported.
         options: How the search is steered.
-        catalogue: The effects that may be missing, ``CATALOGUE + Mine`` with your own.
+        catalogue: The effects that may be missing, ``CATALOGUE + Mine`` with your own. Default:
+            those that the model knows, see `read_model`.
         progress: Called with a phrase and a share of the work done.
 
     Raises:
@@ -91,17 +92,17 @@ def explain(
     measurements, told = without_stuck(measurements)
     if told:
         warnings.warn(told, ToolkitWarning, stacklevel=3)
+    if catalogue is not None:
+        model = replace(model, catalogue=catalogue)
     if measurements.absolute is not None:
         if measurements.absolute.channels.displacement is not None:
             refuse_slips(model, measurements)
         return explain_positions(
-            model, measurements, holdout=holdout, options=options, catalogue=catalogue,
-            progress=progress,
-        )  # fmt: skip
+            model, measurements, holdout=holdout, options=options, progress=progress
+        )
     return explain_displacements(
-        model, measurements, holdout=holdout, options=options, catalogue=catalogue,
-        progress=progress,
-    )  # fmt: skip
+        model, measurements, holdout=holdout, options=options, progress=progress
+    )
 
 
 def explain_displacements(
@@ -110,7 +111,6 @@ def explain_displacements(
     *,
     holdout: Measurements | None = None,
     options: Options | None = None,
-    catalogue: Catalogue = CATALOGUE,
     progress: Progress | None = None,
 ) -> Explanation:
     """See `explain`."""
@@ -120,7 +120,7 @@ def explain_displacements(
     sound = _sound(model, as_seen(model.robot, measurements))
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    under = _selections(model, used, options, catalogue)
+    under = _selections(model, used, options)
     found, noise = best_selection(used, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
@@ -182,7 +182,7 @@ def explain_displacements(
             {each.id for each in named.fallen},
             remainder.something_else,
         ),
-        catalogue=catalogue,
+        catalogue=model.catalogue,
     )
     tell("what these readings cannot tell", 0.85)
     return completed(answer, found.regression, seed=options.seed, cell=options.cell)
@@ -244,12 +244,10 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
         )
 
 
-def _selections(
-    model: Model, measurements: Measurements, options: Options, catalogue: Catalogue
-) -> Try:
+def _selections(model: Model, measurements: Measurements, options: Options) -> Try:
     """Selections at an answer, as a function of the noise and of what joins the base model."""
-    base_model = with_assumed(model, measurements, options.assume, catalogue)
-    candidates = candidates_for(base_model, measurements, options, catalogue)
+    base_model = with_assumed(model, measurements, options.assume)
+    candidates = candidates_for(base_model, measurements, options)
     plain = tuple(effect for effect in candidates if not effect.random_effects)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 

@@ -211,7 +211,7 @@ def model_from_text(
     if content.gravity is not None and arm.on_a_floor:  # what the readings say holds over it
         arm = arm.under(np.array(content.gravity))
     parameters: list[Parameter] = []
-    model = Model(arm, provenance=content.provenance)
+    model = Model(arm, provenance=content.provenance, catalogue=catalogue)
     for entry in content.effects:
         place = f"{where}, effect {entry.name}:{entry.where}"
         try:

@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import (
+    CATALOGUE,
+    Catalogue,
     Effect,
     LoadCases,
     LoadError,
@@ -45,6 +47,7 @@ class Model:
         provenance: Where the whole came from: data hash, command, date.
         uncertainty: How well the parameters are known, where a fit said so; a change of a value, or
             of what is in the model, ends it.
+        catalogue: The effects that there are, those among them that the model has not.
 
     Examples:
         >>> import sk120stiff as sk
@@ -57,6 +60,7 @@ class Model:
     parameters: tuple[Parameter, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
     uncertainty: Uncertainty | None = None
+    catalogue: Catalogue = CATALOGUE
 
     def __repr__(self) -> str:
         places: dict[str, list[str]] = {}

@@ -24,6 +24,7 @@ class LinkStretch(AxisByAxis):
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "stretch = force / K"
     axes: ClassVar[str] = "the line of the link"
+    yields_under: ClassVar[str] = "stretches {where}"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

@@ -10,7 +10,7 @@ import pytest
 
 from sk120stiff.effects import CATALOGUE, load_cases_of
 from sk120stiff.errors import InputError
-from sk120stiff.explain import Explanation, Options
+from sk120stiff.explain import Explanation, Options, localise
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, base_model, read_model, write_model
 from sk120stiff.robot import load_robot
@@ -59,6 +59,16 @@ def test_it_is_found_by_name_with_its_value(answer: Explanation) -> None:
 def test_without_it_the_catalogue_has_no_such_name(model: Model, stretched: Measurements) -> None:
     with pytest.raises(InputError, match="there is no effect 'link_stretch'"):
         answered(model, stretched, options=Options(only=("link_stretch",)))
+
+
+def test_where_it_is_not_looked_for_it_still_says_where_the_gap_lives(
+    model: Model, stretched: Measurements
+) -> None:
+    """A suspect is a free form of every elastic effect, those from outside among them."""
+    kept = Options(exclude=("link_stretch",))
+    found = answered(model, stretched, catalogue=EVERYTHING, options=kept)
+    assert localise(found.base).strongest.name == "the force that stretches link_3_u"
+    assert "link_stretch" not in {each.effect.name for each in found.findings}
 
 
 def test_the_report_speaks_of_it(answer: Explanation, stretched: Measurements) -> None:

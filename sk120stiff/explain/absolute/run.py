@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect, all_effects
+from sk120stiff.effects import Catalogue, Effect, all_effects
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.accounts import (
     families_of,
@@ -72,15 +72,13 @@ def explain_positions(
     *,
     holdout: Measurements | None = None,
     options: Options | None = None,
-    catalogue: Catalogue = CATALOGUE,
     progress: Callable[[str, float], None] | None = None,
 ) -> Explained:
     """See `sk120stiff.explain.run.explain`.
 
     Effects of the model are taken for granted; what else yields or is off is looked for.
     """
-    options = options or Options()
-    usual = Options()
+    options, usual, catalogue = options or Options(), Options(), model.catalogue
     refuse_for_positions(
         readings,
         assume=options.assume,
@@ -90,7 +88,7 @@ def explain_positions(
     )
     refuse_plan(readings)
     every = all_effects(model.robot, absolute=True, catalogue=catalogue)
-    refuse_unknown(every, options, model, catalogue)
+    refuse_unknown(every, options, model)
     if holdout is not None and (holdout.absolute is None or holdout.is_plan):
         raise InputError(
             "the held-out readings are no positions", remedy="Hold out readings of the same kind."

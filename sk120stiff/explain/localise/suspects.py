@@ -87,7 +87,7 @@ def suspects_of(model: Model, load_cases: LoadCases, predicted: Array) -> tuple[
         load_cases: Its N readings.
         predicted: (N, 3) what it predicts, base axes [m].
     """
-    places = yielding(load_cases)
+    places = yielding(load_cases, model.catalogue)
     ends = {each.name: each for each in places if each.name in ENDS}
     return (
         *places,

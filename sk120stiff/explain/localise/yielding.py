@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import CATALOGUE, Catalogue, Elastic, LoadCases
+from sk120stiff.effects import Catalogue, Elastic, LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.model.assembly import Assembly
@@ -22,7 +22,7 @@ from sk120stiff.robot import Robot
 _ASKED: WeakKeyDictionary[LoadCases, dict[Catalogue, tuple[Suspect, ...]]] = WeakKeyDictionary()
 
 
-def yielding(load_cases: LoadCases, catalogue: Catalogue = CATALOGUE) -> tuple[Suspect, ...]:
+def yielding(load_cases: LoadCases, catalogue: Catalogue) -> tuple[Suspect, ...]:
     """What each elastic effect does at each place, turns and shifts apart, about the rigid arm.
 
     Args:
