@@ -77,12 +77,11 @@ def fit(
             measurements, noise=noise is not None, method=method != "trf", robust=robust
         )
         readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
-        if readings.wrench.any():
-            rigid = without_springs(model)
-            placed = calibrate(rigid, readings, geometry=False, waves=False, shared=False)
-            refuse_other_forces(placed, readings)
+        rigid = without_springs(model)
+        placed = calibrate(rigid, readings, geometry=False, waves=False, shared=False)
+        refuse_other_forces(placed, readings)
+        told = refuse_another_gravity(placed, readings)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
-        told = refuse_another_gravity(calibrated, readings)
         beside = Blocks.of(calibrated, CATALOGUE).beside_loads(calibrated.unit)
         told += refuse_pushed(calibrated, readings, *beside)
         found = beside_lacking(with_model_form(calibrated))

@@ -123,6 +123,15 @@ class Channels:
         ends = np.cumsum([0, *(int(self.held(kind).sum()) for kind in self.present)])
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
+    def aim(self, kind: Kind) -> Array:
+        """(N, 3) what makes two numbers of a kind two things: a direction, or a fixed point.
+
+        Zero where the axes alone tell them apart.
+        """
+        aimed = {"distance": self.anchor, "shift": self.along, "inclination": self.level}
+        found = aimed.get(kind)
+        return np.zeros((self.count, 3)) if found is None else np.nan_to_num(found)
+
     @property
     def filled(self) -> Mask:
         """(N,) rows that hold any reading."""

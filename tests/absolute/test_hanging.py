@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,8 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from tests.absolute.arm import Arm, Array, errors, poses, tracked, write
 from tests.absolute.loaded_arm import MARKERS, SPRINGS, rests
+from tests.absolute.test_distances import POINTS
+from tests.absolute.test_forms import rows
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 UP = {"ceiling": [0.0, 0.0, -1.0], "wall": [-1.0, 0.0, 0.0], "slope": [0.6, 0.0, 0.8]}
@@ -157,3 +160,20 @@ def test_loads_that_pull_to_a_side_are_no_gravity(tmp_path: Path, weighs: bool) 
     )  # fmt: skip
     data = sk.read(path)
     assert told(sk.load_robot(data.robot, base="base", tool="tool"), data) == ()
+
+
+@pytest.mark.parametrize("ask", [sk.fit, sk.explain])
+def test_wires_show_it_too(tmp_path: Path, ask: Any) -> None:
+    """Distances to three fixed points whose places are known, of an arm on a ceiling."""
+    arm = errors(3)
+    arm.up = np.array(UP["ceiling"])
+    a = np.repeat(poses(40, 11), 3, axis=0)
+    at = np.tile(POINTS, (40, 1))
+    far = np.linalg.norm(arm.stands(a)[0] - at, axis=1)
+    far += 2e-5 * np.random.default_rng(7).normal(size=len(far))
+    cells = rows(np.column_stack([1e3 * far, tracked(at)]))
+    nothing = np.full((len(a), 3), np.nan)
+    data = sk.read(write(tmp_path, a, nothing, FIT, more=",l[mm],ax[m],ay[m],az[m]", cells=cells))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    with pytest.raises(InputError, match=r"as if gravity were \[.*9.8\d*\] in axes of the base"):
+        ask(sk.base_model(robot), data)

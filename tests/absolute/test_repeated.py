@@ -10,10 +10,13 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import next_step_of_positions
+from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.identify.absolute.repeated import pure_error
 from sk120stiff.identify.absolute.words import gap_sentence
-from tests.absolute.arm import Arm, poses, tracked, write
+from tests.absolute.arm import Arm, errors, poses, tracked, write
 from tests.absolute.loaded_arm import MARKERS, SPRINGS, rests
+from tests.absolute.test_distances import POINTS, UNKNOWN, A
+from tests.absolute.test_forms import FINELY, rows
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 SIGMA = 5e-5
@@ -54,3 +57,23 @@ def test_repeats_tell_what_one_reading_is_worth(tmp_path: Path, times: int) -> N
     assert again.freedom == 60 * 3 * (times - 1)
     assert again.sigma == pytest.approx(SIGMA, rel=0.1)
     assert "Repeat a few poses" not in step
+
+
+def test_wires_to_three_points_at_one_pose_are_no_repeats(tmp_path: Path) -> None:
+    """Each point is read once: how their gaps differ is the model's, not the instrument's."""
+    a = np.repeat(A[:24], 3, axis=0)
+    X = np.repeat(errors(1).stands(A[:24])[0], 3, axis=0)
+    at = np.tile(POINTS, (24, 1))
+    far = np.linalg.norm(X - at, axis=1) + 2e-5 * np.random.default_rng(8).normal(size=72)
+    cells = rows(np.column_stack([1e3 * far, tracked(at)]))
+    more = ",l[mm],ax[m],ay[m],az[m]"
+    for times in (1, 3):
+        path = write(
+            tmp_path, np.repeat(a, times, axis=0), np.full((72 * times, 3), np.nan),
+            UNKNOWN + FINELY, more=more, cells=[c for c in cells for _ in range(times)],
+        )  # fmt: skip
+        data = sk.read(path)
+        robot = sk.load_robot(data.robot, base="base", tool="tool")
+        found = pure_error(calibrate(sk.Model(robot), data.with_joints(robot.actuated)))
+        assert (found is None) == (times == 1)
+        assert found is None or (found.freedom, found.sigma) == (144, pytest.approx(0.0, abs=1e-9))

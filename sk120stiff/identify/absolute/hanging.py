@@ -46,7 +46,7 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
     robot = found.model.robot
     size = float(np.linalg.norm(robot.gravity_in_base))
     present = set(found.problem.channels.present)
-    if size == 0.0 or "position" not in present or "inclination" in present:
+    if size == 0.0 or "inclination" in present or not present & {"position", "distance"}:
         return ()  # a level shows where gravity points itself
     sag = _Sag.of(found)
     if sag.freedom <= 0 or not sag.by_axis.any():

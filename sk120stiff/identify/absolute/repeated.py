@@ -50,14 +50,18 @@ def pure_error(found: Calibration) -> PureError | None:
 
 
 def cells_of_numbers(problem: PoseProblem, of_row: Array | Index) -> Index:
-    """(M,) equal for numbers along one axis, or of one turn, whose rows have equal keys (N, k)."""
-    kinds, axes = [], []
+    """(M,) equal for numbers that read one thing, whose rows have equal keys (N, k).
+
+    One thing is an axis, a turn, a gauge's direction, the point that a distance is from, or the
+    direction of the tool that a level lies along.
+    """
+    kinds, axes, aims = [], [], []
     for number, kind in enumerate(problem.channels.present):
         rows, axis = np.nonzero(problem.channels.held(kind))
         kinds.append(np.full(len(rows), number))
         axes.append(axis)
-    ways = problem.channels.along
-    way = np.zeros((len(problem.rows), 3)) if ways is None else np.nan_to_num(ways)[problem.rows]
-    keys = [of_row[problem.rows], np.concatenate(kinds), np.concatenate(axes), way]
+        aims.append(problem.channels.aim(kind)[rows])
+    told = np.concatenate(kinds), np.concatenate(axes), np.concatenate(aims)
+    keys = [of_row[problem.rows], *told]
     cells: Index = np.unique(np.column_stack(keys), axis=0, return_inverse=True)[1]
     return cells

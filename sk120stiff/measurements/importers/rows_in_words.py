@@ -31,6 +31,7 @@ _ALONG = re.compile(
     re.IGNORECASE,
 )
 _VECTORS = ("e{}", "e {}", "n{}", "n {}", "dir {}", "direction {}", "richtung {}", "force dir {}")
+PULLS = " A mass pulls with its weight along that direction."
 _UNIT_LENGTH = 0.02  # by which the length of a unit vector may be off, as it is rounded
 _SIZES = re.compile(
     r"\|(?:f|force|kraft)\||"
@@ -173,7 +174,7 @@ def _with_forces(sheet: Sheet, direction: Column, told: Told) -> Sheet:
         columns=(*(c for c in sheet.columns if c is not size and c is not direction), *made),
         spare=tuple(c for c in sheet.spare if c is not size),
     )
-    mass = " A mass pulls with its weight along that direction." if unit == "SI" else ""
+    mass = PULLS if unit == "SI" else ""
     return _noting(
         new,
         f"fx, fy, fz are made of {size.header}, the size of the force on the robot, and "
@@ -203,7 +204,8 @@ def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
     if size is None or any(sheet.get(name) for name in FORCES):
         return sheet
     values, _, unit, stated = _as_force(sheet, size, told)
-    if unit == "SI":  # a mass pulls down, whatever stands beside it
+    is_mass = unit == "SI"  # by the file's own words it pulls elsewhere over a pulley alone
+    if is_mass and form[0] == "n":
         return sheet
     e = np.column_stack([numbers(sheet, column) for column in along])
     off = (np.abs(np.linalg.norm(e, axis=1) - 1.0) > _UNIT_LENGTH) & (np.array(values) != 0.0)
@@ -228,7 +230,7 @@ def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
     return _noting(
         new,
         f"fx, fy, fz are {size.header}, the size of the force on the robot, times its direction "
-        f"{', '.join(c.header for c in along)}.",
+        f"{', '.join(c.header for c in along)}.{PULLS if is_mass else ''}",
     )
 
 

@@ -97,6 +97,13 @@ def test_a_mass_pulls_down_whatever_normal_stands_beside_it(names: str, tmp_path
     np.testing.assert_allclose(found.loads.wrench[:, 2], [-98.0665, 0.0])
 
 
+def test_a_mass_over_a_pulley_pulls_along_its_unit_vector(tmp_path: Path) -> None:
+    found = read(tmp_path, "mass [kg];ex;ey;ez", ["10;0,6;0;-0,8", "0;0;0;0"])
+    assert found.loads.payload is None
+    np.testing.assert_allclose(found.loads.wrench[:, :3], 9.80665 * np.array([[6, 0, -8], [0] * 3]))
+    assert any("A mass pulls with its weight" in said for said in found.said)
+
+
 def test_axes_of_the_tool_and_a_unit_that_is_told(tmp_path: Path) -> None:
     rows = ["10;-Z", "-10;Y"]
     found = read(tmp_path, "Kraft;direction", rows, load="kN", forces="tool")
