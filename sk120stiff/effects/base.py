@@ -192,6 +192,14 @@ class Effect(ABC):
         """Groups of parameters that are equal where the part is as stiff one way as the other."""
         return ()
 
+    @property
+    def couplings(self) -> tuple[tuple[int, int, int], ...]:
+        """Parameters (i, j, k), compliances of which k couples what i and j yield to.
+
+        Where k² > i j the part would give off energy under some load: no spring does.
+        """
+        return ()
+
     def applies_to(self, load_cases: LoadCases) -> bool:
         """Do these readings hold what the law needs (an order, branches, a weight)?"""
         return load_cases.absolute or not self.only_absolute

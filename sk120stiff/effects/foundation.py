@@ -77,6 +77,11 @@ class BaseRocking(StraightPart):
         """Often as stiff about one axis as about the other."""
         return ((0, 1),)
 
+    @property
+    def couplings(self) -> tuple[tuple[int, int, int], ...]:
+        """What turns about x under a moment about y, and the other way round."""
+        return ((0, 1, 2),) if self.askew else ()
+
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Two joints before all others."""
         at = homogeneous(robot.foundation)

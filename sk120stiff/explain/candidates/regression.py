@@ -125,6 +125,32 @@ class Regression:
         return np.where(self.compliances[solved.columns], limits * ratio / self.softness, limits)
 
     def is_believed(self, solved: Solved) -> bool:
+        """Is every value of an added parameter believed, and does no part give off energy?"""
+        return self.are_sizes_believed(solved) and self._is_passive(solved)
+
+    def _is_passive(self, solved: Solved) -> bool:
+        """Does no compliance that couples two others exceed what their springs allow?"""
+        for i, j, k, most in self._couplings:
+            if k in solved.columns:
+                own = (float(solved.values[solved.columns == column].sum()) for column in (i, j, k))
+                first, second, coupling = own  # a compliance at its bound is no column: zero
+                if coupling**2 > most * first * second:
+                    return False
+        return True
+
+    @cached_property
+    def _couplings(self) -> tuple[tuple[int, int, int, float], ...]:
+        """Columns i, j, k of every law of which k couples i and j, and the most of k² / i j."""
+        found = []
+        for variants, laws in zip(self.variants, self.laws, strict=True):
+            for columns, law in zip(variants, laws, strict=True):
+                typical = [spec.typical for spec in law.parameters]
+                for i, j, k in law.couplings if len(columns) == len(typical) else ():
+                    most = typical[i] * typical[j] / typical[k] ** 2
+                    found.append((int(columns[i]), int(columns[j]), int(columns[k]), most))
+        return tuple(dict.fromkeys(found))
+
+    def are_sizes_believed(self, solved: Solved) -> bool:
         """Does no value of an added parameter lie beyond what is believed?"""
         size, added = np.abs(solved.values), ~self.in_base[solved.columns]
         beyond = added & (size > self._always[solved.columns])

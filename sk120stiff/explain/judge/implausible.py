@@ -36,7 +36,7 @@ def implausible(found: Selection) -> Implausible | None:
         if not regression.candidates[e].random_effects:
             law = now.by_variant | {e: promised.likeliest(e)}
             tried[e] = score_set(regression, sums, law, untied=e, start=law, only=())
-    beyond = [e for e, model in tried.items() if not model.plausible]
+    beyond = [e for e in tried if not regression.are_sizes_believed(tried[e].solved)]
     if not beyond or not now.plausible:
         return None
     best = min(beyond, key=lambda e: tried[e].score)
