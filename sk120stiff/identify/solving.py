@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.passive import passive
 from sk120stiff.identify.solve.polish import TRIAL, Minimum, polish
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method, minimise
@@ -38,7 +39,9 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
 
     rough = polish(linear, problem.start, problem.bounds, problem.span)
     start = _with_equilibrium(problem, rough.x)
-    found = minimise(problem.evaluate, start, problem.bounds, problem.span, method)
+    found = passive(
+        problem, minimise(problem.evaluate, start, problem.bounds, problem.span, method)
+    )
     return with_values(_likeliest_before(_as_fit(problem, found)))
 
 
@@ -56,7 +59,7 @@ def solve_near(problem: Problem, x: Array) -> Fit:
         if not calibrated:
             raise
         found = _held_by_calibrations(problem, x)
-    return with_values(_likeliest_before(_as_fit(problem, found)))
+    return with_values(_likeliest_before(_as_fit(problem, passive(problem, found))))
 
 
 def _held_by_calibrations(problem: Problem, x: Array) -> Minimum:

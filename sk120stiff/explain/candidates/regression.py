@@ -25,6 +25,8 @@ from sk120stiff.explain.candidates.sums import Solved, Sums, sums_of, weighing
 from sk120stiff.explain.priors import price
 from sk120stiff.identify import Fit
 
+BY_FAR = 1.5  # times the square that springs allow a coupling: what errors of readings bring
+
 
 @dataclass(frozen=True, eq=False)
 class Regression:
@@ -129,12 +131,15 @@ class Regression:
         return self.are_sizes_believed(solved) and self._is_passive(solved)
 
     def _is_passive(self, solved: Solved) -> bool:
-        """Does no compliance that couples two others exceed what their springs allow?"""
+        """Does no compliance that couples two others exceed by far what their springs allow?
+
+        By little it does where a part is stiff one way and its readings err; a fit does not let it.
+        """
         for i, j, k, most in self._couplings:
             if k in solved.columns:
                 own = (float(solved.values[solved.columns == column].sum()) for column in (i, j, k))
                 first, second, coupling = own  # a compliance at its bound is no column: zero
-                if coupling**2 > most * first * second:
+                if coupling**2 > BY_FAR * most * first * second:
                     return False
         return True
 

@@ -198,10 +198,6 @@ def refit(base: Fit, effects: Sequence[Effect], near: Fit | None = None) -> Fit:
             BOUNDLESS * parameter.spec.plausible
         ):
             raise Refusal(f"{parameter.name} is undone by another effect, and grows without end")
-    for effect in effects:
-        values = [each.internal for each in found.parameters if each.effect == effect]
-        if any(values[k] ** 2 > values[i] * values[j] for i, j, k in effect.couplings):
-            raise Refusal(f"{effect.id} would give off energy under some loads")
     return found
 
 

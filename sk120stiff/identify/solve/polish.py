@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
@@ -234,7 +235,7 @@ def _rounding(size: float, last: float, change: Array, faint: float) -> bool:
 
 def _noise(residual: Array) -> float:
     """Root mean square of the residual."""
-    return float(np.linalg.norm(residual)) / np.sqrt(max(len(residual), 1))
+    return float(np.linalg.norm(residual)) / sqrt(max(len(residual), 1))
 
 
 def _size(step: Array, x: Array) -> float:

@@ -146,6 +146,22 @@ class Problem:
         return lower, upper
 
     @cached_property
+    def couplings(self) -> tuple[tuple[int, int, int], ...]:
+        """Places i, j and k among the free parameters of which k couples i and j, see `Effect`."""
+        place = {int(k): n for n, k in enumerate(self.free)}
+        first: dict[str, int] = {}
+        for number, parameter in enumerate(self.model.parameters):
+            first.setdefault(parameter.effect.id, number)
+        found = (
+            tuple(first[effect.id] + k for k in own)
+            for effect in self.model.effects
+            for own in effect.couplings
+        )
+        return tuple(
+            (place[i], place[j], place[k]) for i, j, k in found if {i, j, k} <= place.keys()
+        )
+
+    @cached_property
     def start(self) -> Array:
         """(P_free,) starting values in scaled units, none beyond what is plausible.
 
