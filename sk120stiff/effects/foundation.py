@@ -8,15 +8,19 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two
 from sk120stiff.effects.base import AxisByAxis, Effect
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
+from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.rotations import homogeneous
 
-CROSS = "cross_stiffness"
+BELOW = "_below_"
+PEDESTALS = (0.4, 0.8, 1.6)  # m: heights of what arms stand on, where it is not told
+FINER = (0.75, 0.87, 1.15, 1.3)  # times such a height
 
 
 @dataclass(frozen=True)
@@ -25,10 +29,16 @@ class BaseRocking(StraightPart):
 
     The base frame's z is the normal of the mounting surface, whether floor, wall or ceiling. Yaw
     about it is left out: where the first joint turns about that line, it is that joint's spring
-    under another name. A foundation whose stiff direction lies askew has a cross term too.
+    under another name. A foundation whose stiff direction lies askew has a cross term too; one that
+    stands on a pedestal rocks about a point below.
+
+    Attributes:
+        askew: There is a cross term.
+        below: Height of the foundation point over that about which the base rocks [m].
     """
 
     askew: bool = False
+    below: float = 0.0
     name: ClassVar[str] = "base_rocking"
     place: ClassVar[str] = "the base frame"
     equation: ClassVar[str] = "turn = moment / K, about x and about y"
@@ -36,33 +46,51 @@ class BaseRocking(StraightPart):
     axes: ClassVar[str] = (
         "axes of the base frame through the foundation point; z is the normal of the floor"
     )
-    also: ClassVar[str] = f"with {CROSS}, where the stiff direction lies askew of the axes; {ALSO}"
+    also: ClassVar[str] = (
+        f"with {CROSS}, where the stiff direction lies askew of the axes; all three with {BELOW} "
+        "and a number behind their names, as stiffness_x_below_800: about a point so many "
+        f"millimetres below, as on a pedestal; {ALSO}"
+    )
     yields_under: ClassVar[str] = "tips the base"
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Effect:
-        """The foundation, askew where names of parameters tell of a cross term."""
+        """The foundation by the law that names of parameters tell.
+
+        Raises:
+            InputError: Names that tell of points at several heights.
+        """
         found = super().at(robot, where, options)
-        return replace(found, askew=CROSS in options.shape) if isinstance(found, cls) else found
+        heights = {name.partition(BELOW)[2] for name in options.shape} or {""}
+        if len(heights) > 1 or not all(each.isdecimal() for each in heights - {""}):
+            raise InputError(
+                f"{where} rocks about one point, and parameters say {sorted(heights)}",
+                remedy=f"Write the same whole number of millimetres behind {BELOW} in all names.",
+            )
+        below = float(heights.pop() or 0.0) / 1e3
+        askew = any(name.startswith(CROSS) for name in options.shape)
+        return replace(found, askew=askew, below=below) if isinstance(found, cls) else found
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """With a cross term or without, and out of proportion."""
-        return (replace(self, askew=not self.askew), *super().other_laws(load_cases))
+        """With a cross term, about points below too, and out of proportion."""
+        plain = BaseRocking(self.where, self.scale)
+        laws = [plain, *(replace(plain, askew=True, below=h) for h in (0.0, *PEDESTALS))]
+        straight = tuple(law for law in laws if law != self)
+        return (*straight, *super(BaseRocking, plain).other_laws(load_cases))
+
+    def nearby_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """About points a little higher and lower."""
+        if not self.below:
+            return ()
+        heights = {round(factor * self.below, 3) for factor in FINER} - {self.below, *PEDESTALS}
+        return tuple(replace(self, below=h) for h in sorted(heights))
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Rocking stiffness about x and about y, and what couples the two."""
-        cross = compliance(
-            CROSS,
-            softest=6e5,
-            typical=2e7,
-            scale=self.scale,
-            meaning="moment about x over the turn about y that it brings, and the other way round",
-            signed=True,
-        )
         own = (
             compliance(
-                f"stiffness_{label}",
+                f"stiffness_{label}{self._end}",
                 softest=3e5,
                 typical=1e7,
                 scale=self.scale,
@@ -70,7 +98,7 @@ class BaseRocking(StraightPart):
             )
             for label in "xy"
         )
-        return (*own, *([cross] if self.askew else []))
+        return (*own, *([cross_term(self.scale, "x", "y", self._end)] if self.askew else []))
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
@@ -78,21 +106,25 @@ class BaseRocking(StraightPart):
         return ((0, 1),)
 
     @property
+    def _end(self) -> str:
+        return f"{BELOW}{1e3 * self.below:.0f}" if self.below else ""
+
+    @property
     def couplings(self) -> tuple[tuple[int, int, int], ...]:
         """What turns about x under a moment about y, and the other way round."""
-        return ((0, 1, 2),) if self.askew else ()
+        return COUPLINGS if self.askew else ()
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Two joints before all others."""
-        at = homogeneous(robot.foundation)
+        at = homogeneous(robot.foundation - np.array([0.0, 0.0, self.below]))
         return tuple(
-            VirtualJoint(f"{self.id}.{label}", -1, at, np.eye(3)[k]) for k, label in enumerate("xy")
+            VirtualJoint(f"{self.id}.{label}{self._end}", -1, at, np.eye(3)[k])
+            for k, label in enumerate("xy")
         )
 
     def patterns(self, load_cases: LoadCases) -> Array:
         """Each axis has a compliance of its own; the cross term couples them."""
-        own = [np.diag(row) for row in np.eye(2)]
-        return np.array([*own, 1.0 - np.eye(2)] if self.askew else own)
+        return patterns_of_two(self.askew)
 
 
 class NonlinearRocking(Nonlinear):

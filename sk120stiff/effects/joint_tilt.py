@@ -2,24 +2,45 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
+from sk120stiff.arrays import Array
+from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two
+from sk120stiff.effects.base import Effect
+from sk120stiff.effects.load_cases import LoadCases
+from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
+from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
+from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint, free_joints
+from sk120stiff.robot.anatomy import arm_joint, carrier_of, free_joints
+from sk120stiff.robot.rotations import homogeneous
+
+HOUSING = "_of_housing"
+ROLL = "stiffness_about"
 
 
 @dataclass(frozen=True)
 class JointTilt(StraightPart):
-    """Two virtual joints at the bearing, on its moving side: along the link, and across it.
+    """Two virtual joints at the bearing: along a link and across it, normal to the joint axis.
 
-    The bearing of a joint that slides is its carriage.
+    What is softer one way than the other may be the part that the joint moves, or the housing on
+    the link before it: the soft direction then does not turn with the joint. The bearing of a joint
+    that slides is its carriage, which may roll about its rail, too.
+
+    Attributes:
+        askew: The stiff direction lies askew of the axes.
+        housing: So it does, and the axes are those of the link that carries the joint, not of the
+            one that it moves.
+        rolls: A carriage turns about its rail, too.
     """
 
+    askew: bool = False
+    housing: bool = False
+    rolls: bool = False
     name: ClassVar[str] = "joint_tilt"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = "tilt = moment / K, about each of two axes"
@@ -27,32 +48,65 @@ class JointTilt(StraightPart):
     axes: ClassVar[str] = (
         "axes through the joint, normal to its own: along the link that it carries, and across it"
     )
+    also: ClassVar[str] = (
+        f"with {CROSS}, where the stiff direction lies askew of the axes; all three with "
+        f"{HOUSING} behind their names, about the axes along and across the link on which the "
+        f"joint sits, which do not turn with it; with {ROLL}, where a carriage rolls about its "
+        f"rail; {ALSO}"
+    )
     yields_under: ClassVar[str] = "{where} carries across its axis"
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Effect:
+        """The bearing, by the law that names of parameters tell.
+
+        Raises:
+            InputError: A joint that turns is said to roll: that is its spring.
+        """
+        housing = any(name.endswith(HOUSING) for name in options.shape)
+        askew, rolls = housing or CROSS in options.shape, ROLL in options.shape
+        if rolls and arm_joint(robot, where).revolute:
+            raise InputError(
+                f"{where} does not slide: what turns about its axis is its spring",
+                remedy=f"Leave {ROLL} out; joint_springs holds it.",
+            )
+        found = super().at(robot, where, options)
+        if not isinstance(found, cls):
+            return found
+        return replace(found, askew=askew, housing=housing, rolls=rolls)
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """Askew of the axes, by those of the housing, and out of proportion."""
+        plain = JointTilt(self.where, self.scale)
+        turns = arm_joint(load_cases.robot, self.where).revolute
+        further = replace(plain, askew=True, housing=True) if turns else replace(plain, rolls=True)
+        laws = (plain, replace(plain, askew=True), further)
+        straight = tuple(law for law in laws if law != self)
+        return (*straight, *super(JointTilt, plain).other_laws(load_cases))
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Tilt stiffness about the link's direction and across it."""
-        return (
-            compliance(
-                "stiffness_along",
-                softest=3e5,
-                typical=1e7,
-                scale=self.scale,
-                meaning="against tilting about the direction of the link",
-            ),
-            compliance(
-                "stiffness_across",
-                softest=3e5,
-                typical=1e7,
-                scale=self.scale,
-                meaning="against tilting about the axis across link and joint axis",
-            ),
-        )
+        """Tilt stiffness about the link's direction and across it, and what couples the two."""
+        end, link = (HOUSING, "link that carries the joint") if self.housing else ("", "link")
+        along, across = f"the direction of the {link}", f"the axis across {link} and joint axis"
+        own = [
+            _tilt(f"stiffness_{label}{end}", self.scale, f"against tilting about {axis}")
+            for label, axis in (("along", along), ("across", across))
+        ]
+        if self.rolls:
+            about = "against rolling about the axis along which the joint slides"
+            own.append(_tilt(ROLL, self.scale, about))
+        return (*own, *([cross_term(self.scale, along, across, end)] if self.askew else []))
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
         """Often as stiff about one axis as about the other."""
         return ((0, 1),)
+
+    @property
+    def couplings(self) -> tuple[tuple[int, int, int], ...]:
+        """What tilts about one axis under a moment about the other."""
+        return COUPLINGS if self.askew else ()
 
     @classmethod
     def places(cls, robot: Robot) -> tuple[str, ...]:
@@ -61,11 +115,26 @@ class JointTilt(StraightPart):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """One joint for each tilt axis, at the joint's origin."""
-        joint = arm_joint(robot, self.where)
+        joint, carrier = arm_joint(robot, self.where), carrier_of(robot, self.where)
+        end, index, at = "", joint.index, np.eye(4)
+        axes: tuple[Array, ...] = joint.tilt_axes()
+        if self.housing:
+            end, index = HOUSING, -1 if carrier is None else carrier.index
+            at, axes = homogeneous(joint.placement[:3, 3]), joint.tilt_axes_on(carrier)
+        if self.rolls:
+            axes = (*axes, joint.axis)
         return tuple(
-            VirtualJoint(f"{self.id}.{label}", joint.index, np.eye(4), axis)
-            for label, axis in zip(("along", "across"), joint.tilt_axes(), strict=True)
+            VirtualJoint(f"{self.id}.{label}{end}", index, at, axis)
+            for label, axis in zip(("along", "across", "about"), axes, strict=False)
         )
+
+    def patterns(self, load_cases: LoadCases) -> Array:
+        """Each axis has a compliance of its own; the cross term couples them."""
+        return super().patterns(load_cases) if self.rolls else patterns_of_two(self.askew)
+
+
+def _tilt(name: str, scale: float, meaning: str) -> ParameterSpec:
+    return compliance(name, softest=3e5, typical=1e7, scale=scale, meaning=meaning)
 
 
 class NonlinearTilt(Nonlinear):

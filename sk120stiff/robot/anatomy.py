@@ -33,6 +33,7 @@ class ArmJoint:
         axis: (3,) its direction in its own frame.
         along: (3,) from its origin to the next joint's origin (the tool's, for the last), own frame
             [m].
+        placement: (4, 4) its frame in that of the joint before, or of the base, for the first.
     """
 
     name: str
@@ -42,6 +43,7 @@ class ArmJoint:
     revolute: bool
     axis: Array
     along: Array
+    placement: Array
 
     @property
     def length(self) -> float:
@@ -63,12 +65,24 @@ class ArmJoint:
 
     def tilt_axes(self) -> tuple[Array, Array]:
         """Two unit directions normal to the joint axis: as far along the link as can be, across."""
-        flat = self.along - self.axis * (self.axis @ self.along)
-        if np.linalg.norm(flat) < SHORTEST_LINK:
-            flat = np.eye(3)[np.argmin(np.abs(self.axis))]
-            flat = flat - self.axis * (self.axis @ flat)
-        flat = flat / np.linalg.norm(flat)
-        return flat, np.cross(self.axis, flat)
+        return _normal_to(self.axis, self.along)
+
+    def tilt_axes_on(self, carrier: ArmJoint | None) -> tuple[Array, Array]:
+        """The same by the link that carries the joint, in the frame of the joint before.
+
+        On the base (None) that is as far along its x axis as can be, in the base's frame.
+        """
+        along = np.eye(3)[0] if carrier is None else carrier.along
+        return _normal_to(self.placement[:3, :3] @ self.axis, along)
+
+
+def _normal_to(axis: Array, along: Array) -> tuple[Array, Array]:
+    flat = along - axis * (axis @ along)
+    if np.linalg.norm(flat) < SHORTEST_LINK:
+        flat = np.eye(3)[np.argmin(np.abs(axis))]
+        flat = flat - axis * (axis @ flat)
+    flat = flat / np.linalg.norm(flat)
+    return flat, np.cross(axis, flat)
 
 
 def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
@@ -91,6 +105,7 @@ def _on_the_way(robot: Robot) -> tuple[ArmJoint, ...]:
             revolute=bool(chain.revolute[k]),
             axis=chain.axes[k],
             along=chain.placements[k + 1][:3, 3],
+            placement=chain.placements[k],
         )
         for k, name in enumerate(chain.names)
     )
@@ -158,6 +173,12 @@ def last_link(robot: Robot) -> str:
 def arm_joint(robot: Robot, name: str) -> ArmJoint:
     """The joint of that name, or the joint that moves the link of that name."""
     return next(joint for joint in arm_joints(robot) if name in (joint.name, joint.link))
+
+
+def carrier_of(robot: Robot, name: str) -> ArmJoint | None:
+    """The joint whose link carries the joint of that name; None: the base does."""
+    index = arm_joint(robot, name).index
+    return arm_joints(robot)[index - 1] if index else None
 
 
 def passed_on(robot: Robot, link: ArmJoint) -> tuple[tuple[int, float], ...]:
