@@ -21,11 +21,13 @@ from sk120stiff.effects.base import LoadError, scale_of
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
+from sk120stiff.effects.reference import ORDER, TIME
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
 OF_RIG = "base_"
+RATE = "rate_"
 
 
 class _SensorError(LoadError):
@@ -113,31 +115,92 @@ class ForceScale(_RigError):
 
 @dataclass(frozen=True)
 class ForceBias(_RigError):
-    """The sensor adds a constant force that the unloaded reading did not have."""
+    """The sensor adds a force that the unloaded reading did not have: a constant one, or a drift.
 
+    Strain gauges creep and warm up: what they add goes on from the first reading of the series, by
+    the clock, or by the order of the readings where no time is known.
+
+    Attributes:
+        drifts: `TIME` or `ORDER`, with which it goes on; empty: it is constant.
+    """
+
+    drifts: str = ""
     name: ClassVar[str] = "force_bias"
     former: ClassVar[Mapping[str, str]] = {f"force_{axis}": f"offset_{axis}" for axis in AXES}
     equation: ClassVar[str] = "F_reported - F_true = b, under load alone"
     says: ClassVar[str] = "The force sensor has a constant offset under load."
+    also: ClassVar[str] = (
+        f"{_RigError.also}; with {RATE}x and so on, what the sensor adds grows by so much for each "
+        "second, or reading, from the first one on"
+    )
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The law that names and units of the parameters tell."""
+        found = super().at(robot, where, options)
+        drifts = any(name.startswith(RATE) for name in options.shape)
+        return replace(found, drifts=(TIME if options.timed else ORDER) if drifts else "")
+
+    @classmethod
+    def options_of(cls, parameters: Mapping[str, str]) -> Options:
+        """The clock that the units of the parameters tell, and the law that their names tell."""
+        return Options(timed="N/s" in parameters.values(), shape=tuple(parameters))
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Self, ...]:
+        """The same in the other frame; a sensor's may drift where the file tells a clock."""
+        plain = replace(self, of_rig=False, drifts="")
+        clock = next((each for each in (TIME, ORDER) if _clock(load_cases, each) is not None), None)
+        laws = [plain, replace(plain, of_rig=True)]
+        laws += [] if clock is None else [replace(plain, drifts=clock)]
+        return tuple(law for law in laws if law != self)
+
+    def sentence(self) -> str:
+        """What happens."""
+        return "The zero of the force sensor drifts." if self.drifts else super().sentence()
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """What the sensor adds to the true force."""
         size = self.scale**2
-        return of_axes(
+        offset = of_axes(
             f"offset_{self._along}", "N", plausible=50.0 * size, typical=5.0 * size,
             meaning=f"reported minus true force along {{}} of the {self._frame}; positive: the "
             "sensor reads too much",
+        )  # fmt: skip
+        if not self.drifts:
+            return offset
+        by_clock = self.drifts == TIME
+        typical = size * (5e-3 if by_clock else 0.1)
+        return (
+            *offset,
+            *of_axes(
+                f"{RATE}{{}}", "N/s" if by_clock else "N", plausible=100.0 * typical,
+                typical=typical,
+                meaning="by how much that grows from the first reading on, for each "
+                f"{'second' if by_clock else 'reading'}, along {{}} of the {self._frame}",
+            ),
         )  # fmt: skip
 
     @cached_property
     def generators(self) -> Array:
         """It does not depend on the load."""
-        return np.zeros((3, 6, 6))
+        return np.zeros((len(self.parameters), 6, 6))
 
     def offsets(self, load_cases: LoadCases) -> Array:
-        """A unit force along each sensor axis, taken away."""
-        return np.broadcast_to(-np.eye(6)[:, :3], (load_cases.count, 6, 3))
+        """A unit force along each sensor axis, taken away; times the clock where it drifts."""
+        unit = np.broadcast_to(-np.eye(6)[:, :3], (load_cases.count, 6, 3))
+        if not self.drifts:
+            return unit
+        clock = _clock(load_cases, self.drifts)
+        gone = np.zeros(load_cases.count) if clock is None else clock
+        return np.concatenate([unit, gone[:, None, None] * unit], axis=2)
+
+
+def _clock(load_cases: LoadCases, of: str) -> Array | None:
+    """(N,) time [s] or number of each reading from the first of all on; None: not told."""
+    since: Array | None = getattr(load_cases, of)
+    begun: Array | None = getattr(load_cases, f"{of}_at_zero")
+    return since if since is None or begun is None else since + begun
 
 
 @dataclass(frozen=True)
