@@ -83,12 +83,24 @@ class Remainder:
         """
         if not self.rms or chance >= self.probability:
             return self
-        p = float(np.clip(chance, 1e-300, np.exp(-1.0)))
-        logit = _logit(SOMETHING_ELSE) - 1.0 - float(np.log(-p * np.log(p)))
         return replace(
             self,
             left=replace(self.left, probability=chance),
-            something_else=max(self.something_else, float(expit(logit))),
+            something_else=max(self.something_else, _at_most(chance)),
+        )
+
+    def unless_noise(self, chance: float) -> Remainder:
+        """The same where tests of what is left, of this probability, leave it to the noise.
+
+        Gaps whose size goes with the load look as if poses had something in common, and are noise
+        that grows all the same: what all tests together do not say is not said.
+        """
+        if chance <= self.probability:
+            return self
+        return replace(
+            self,
+            left=replace(self.left, probability=chance),
+            something_else=min(self.something_else, _at_most(chance)),
         )
 
     def unless(self, instead: Sequence[float]) -> Remainder:
@@ -127,14 +139,23 @@ def remainder_of(fit: Fit, test: Adequacy | None = None, suspect: str | None = N
     """
     left = left_over(fit)
     something_else = _something_else(left.found, len(fit.problem.measurements.poses))
-    if test is None or not test.lacking:
+    if test is None:
         return Remainder(left, something_else=something_else)
+    if not test.lacking:
+        found = Remainder(left, something_else=something_else)
+        return found.unless_noise(test.probability) if test.tests else found
     load_cases = fit.problem.load_cases
     closest = suspect_named(suspect or test.closest, fit.model, load_cases)
     if closest is not None:
         columns = np.swapaxes(load_cases.reading_axes, 1, 2) @ closest.columns
         left = going_with(left, fit, columns, grows=closest.family != "series")
     return Remainder(left, something_else=something_else).beside(test.probability)
+
+
+def _at_most(chance: float) -> float:
+    """What a test of this probability says for something without a name, at most."""
+    p = float(np.clip(chance, 1e-300, np.exp(-1.0)))
+    return float(expit(_logit(SOMETHING_ELSE) - 1.0 - float(np.log(-p * np.log(p)))))
 
 
 def _something_else(found: Components, poses: int) -> float:
