@@ -15,7 +15,6 @@ from sk120stiff.cli.options import DataArgument, ModelArgument, OutOption
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.data_checks import look
-from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import warn
 from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.identify.absolute.placed_anew import placed_anew
@@ -25,6 +24,7 @@ from sk120stiff.model.predicted import (
     predict_what_holds,
     prediction_table,
     rows_of,
+    seen_by,
     unknown_reasons,
 )
 
@@ -47,7 +47,7 @@ def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> 
     for said in look(believed, readings).sentences:
         warn(said)
     with progress_bar("predict"):
-        predicted = predict_what_holds(believed, load_cases_of(robot, readings))
+        predicted = predict_what_holds(believed, seen_by(believed, readings))
     columns = prediction_table(readings, predicted)
     if out is not None:
         write_atomically(out, csv_text(columns.items()))

@@ -100,6 +100,14 @@ class LoadCases:
         """Number of readings N."""
         return len(self.a)
 
+    @property
+    def of_another_file(self) -> LoadCases:
+        """The same readings to a model that was fitted to others: labels of poses say nothing.
+
+        Pose 3 of one file is not that of another, and its zero reading was another one.
+        """
+        return replace(self, poses=tuple(f"{label} of another file" for label in self.poses))
+
     def since(self, of: str, reference: Reference | None) -> Array | None:
         """(N,) `temperature`, `time` or `order` since a reference [K, s or 1]; None: not read.
 

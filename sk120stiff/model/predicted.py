@@ -114,7 +114,8 @@ class Predicted:
 def predict(model: Model, measurements: Measurements) -> Predicted:
     """What a model says of every row of measurements, or of a plan; ± where that is known.
 
-    Of absolute readings it is where the marker stands.
+    Of absolute readings it is where the marker stands. What a model says of the zero readings of
+    its own file, pose by pose, is nothing of another file, whatever its poses are called.
 
     Args:
         model: Robot, effects, and their uncertainty if it is known.
@@ -139,12 +140,19 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
         26.4 µm rms
     """
     model = model.under(measurements.gravity)
-    load_cases = load_cases_of(model.robot, measurements)
     if measurements.absolute is None:
-        return predict_with_uncertainty(model, load_cases)
+        return predict_with_uncertainty(model, seen_by(model, measurements))
     refuse_unknown_place(model, measurements)
     warn_of_references(model, measurements)
     return predict_channels(model, measurements)
+
+
+def seen_by(model: Model, measurements: Measurements) -> LoadCases:
+    """The readings as a model sees them: what it says of zero readings is of its own file alone."""
+    load_cases = load_cases_of(model.robot, measurements)
+    fitted_to = model.provenance.get("data_hash", "")
+    own = fitted_to in ("", f"sha256:{measurements.data_hash}")
+    return load_cases if own else load_cases.of_another_file
 
 
 def knows_place(model: Model, measurements: Measurements) -> bool:

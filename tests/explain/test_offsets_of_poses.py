@@ -7,6 +7,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff import Model, base_model, load_robot
+from sk120stiff.effects.tracker import ZeroOffset
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.aliases import exact_aliases
 from sk120stiff.measurements import Measurements, NoiseStatement
@@ -87,3 +88,16 @@ def test_what_shows_at_no_other_poses_is_called_no_alias() -> None:
     typical = [spec.typical for spec in drift.parameters]
     drifting = (model + drift).with_values(np.array([*model.values, *typical]))
     assert exact_aliases(drifting, drift, [tilt], point=np.array([0.0, 0.1, 0.2])) == ()
+
+
+def test_offsets_are_those_of_the_file_they_were_found_in(springs: Model) -> None:
+    """Another file calls other poses by the same labels; its zero readings are others, too."""
+    readings = replace(hidden(), data_hash="a")
+    offsets = springs + ZeroOffset("tracker", poses=readings.poses)
+    values = np.append(springs.values, np.full(3 * len(readings.poses), 2e-4))
+    model = replace(offsets.with_values(values), provenance={"data_hash": "sha256:a"})
+    bare = sk.predict(springs, readings).displacement
+    own = sk.predict(model, readings).displacement
+    other = sk.predict(model, replace(readings, data_hash="b")).displacement
+    np.testing.assert_allclose(own - bare, 2e-4, rtol=1e-9)
+    np.testing.assert_allclose(other, bare, atol=1e-12)

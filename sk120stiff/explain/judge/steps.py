@@ -187,7 +187,7 @@ def _base_name(base: Fit) -> str:
 def _on_file(found: Fit, holdout: Measurements) -> float:
     """Gap on a hold-out file, per axis [m]."""
     other = Problem(found.model, holdout.masked(), found.problem.noise)
-    gap = other.measured - found.model.predict(other.load_cases)
+    gap = other.measured - found.model.predict(other.load_cases.of_another_file)
     return float(np.sqrt(np.nanmean(gap**2)))
 
 
