@@ -1,6 +1,6 @@
 """The contract of an effect: one physical cause with a name, a place, parameters and a law.
 
-An effect enters in one of eight ways, and each way is one base class:
+It enters in one of eight ways, each of them one base class:
 
 =============  ==========================================================  ======================
 class          what it changes                                             example
@@ -16,9 +16,8 @@ class          what it changes                                             examp
 `Mounting`     the axes of the target on the tool, R_read = R_tool R(p)    a turned target
 =============  ==========================================================  ======================
 
-So a misread force can never pose as a spring. Adding an effect is one new file and one line in
-`catalogue.py`; from outside the package it is ``CATALOGUE + MyEffect``, or an entry point. What the
-program has to know of an effect beyond its law is a trait of it here, with a default.
+So a misread force never poses as a spring. A new effect is one file and one line in `catalogue.py`,
+or ``CATALOGUE + MyEffect`` from outside; what else has to be known of it is a trait here.
 """
 
 from __future__ import annotations
@@ -194,10 +193,7 @@ class Effect(ABC):
 
     @property
     def couplings(self) -> tuple[tuple[int, int, int], ...]:
-        """Parameters (i, j, k), compliances of which k couples what i and j yield to.
-
-        Where k² > i j the part would give off energy under some load: no spring does.
-        """
+        """Parameters (i, j, k) of which k couples i and j: no spring has k² > i j."""
         return ()
 
     def applies_to(self, load_cases: LoadCases) -> bool:
