@@ -288,7 +288,7 @@ class ForcePoint(_SensorError):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """True place minus stated place."""
-        plausible, typical = (0.5, 0.02) if self.hung else (0.1, 5e-3)
+        plausible, typical = (0.5, 0.02) if self.hung else (0.2, 5e-3)
         return of_axes(
             "offset_{}", "m", plausible=plausible * self.scale, typical=typical * self.scale,
             meaning="true minus stated place of the load along {} of the tool frame",

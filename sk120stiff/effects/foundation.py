@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two
+from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two, softest_way
 from sk120stiff.effects.base import AxisByAxis, Effect
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
@@ -84,6 +85,12 @@ class BaseRocking(StraightPart):
             return ()
         heights = {round(factor * self.below, 3) for factor in FINER} - {self.below, *PEDESTALS}
         return tuple(replace(self, below=h) for h in sorted(heights))
+
+    def told(self, values: Mapping[str, float]) -> str:
+        """See `Effect.told`: about which axis it is softest, and about a point how far below."""
+        way = softest_way([*values.values()], "x", "y") if self.askew else ""
+        below = f" about a point {self.below:.2g} m below" if self.below else ""
+        return f"The base rocks on its foundation{below}{f': {way}' if way else ''}."
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

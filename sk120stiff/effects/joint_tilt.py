@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two
+from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two, softest_way
 from sk120stiff.effects.base import Effect
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
@@ -83,6 +84,17 @@ class JointTilt(StraightPart):
         laws = (plain, replace(plain, askew=True), further)
         straight = tuple(law for law in laws if law != self)
         return (*straight, *super(JointTilt, plain).other_laws(load_cases))
+
+    def told(self, values: Mapping[str, float]) -> str:
+        """See `Effect.told`: about which axis it is softest, and whether that turns with it."""
+        if self.rolls:
+            return f"The carriage of {self.where} tilts and rolls on its rail."
+        if not self.askew:
+            return self.sentence()
+        link = "the link that carries it (of x on the base)" if self.housing else "its link"
+        way = softest_way([*values.values()], f"the direction of {link}", "the one across")
+        turns = ", whatever the joint's angle" if self.housing else ""
+        return f"The bearing of {self.where} tilts{f': {way}{turns}' if way else ''}."
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

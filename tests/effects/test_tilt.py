@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sk120stiff import Model, load_robot
 from sk120stiff.effects import effect, load_case
+from sk120stiff.effects.foundation import BaseRocking
 from sk120stiff.effects.joint_tilt import HOUSING, ROLL, JointTilt
 from sk120stiff.effects.options import Options
 from sk120stiff.errors import InputError
@@ -125,3 +126,21 @@ def test_a_joint_that_turns_does_not_roll() -> None:
     robot = load_robot(FOLDER / "six_axis.urdf", base=base, tool=tool)
     with pytest.raises(InputError, match="lift does not slide"):
         JointTilt.at(robot, "lift", Options(shape=(ROLL,)))
+
+
+def test_words_say_about_which_axis_a_part_is_softest() -> None:
+    """Principal axes of a compliance that was turned by 40 degrees."""
+    soft, stiff, turn = 1 / 2e6, 1 / 8e6, np.radians(40.0)
+    u = np.array([np.cos(turn), np.sin(turn)])
+    C = stiff * np.eye(2) + (soft - stiff) * np.outer(u, u)
+    values = [1.0 / C[0, 0], 1.0 / C[1, 1], 1.0 / C[0, 1]]
+    bearing = JointTilt("lift", askew=True, housing=True)
+    said = bearing.told({p.name: v for p, v in zip(bearing.parameters, values, strict=True)})
+    assert "softest, 2e+06 N*m/rad, about an axis 40 deg from the direction" in said
+    assert "8e+06 N*m/rad about the one across, whatever the joint's angle" in said
+    base = BaseRocking("floor", askew=True, below=0.8)
+    said = base.told({p.name: v for p, v in zip(base.parameters, values, strict=True)})
+    assert said.startswith("The base rocks on its foundation about a point 0.8 m below: softest")
+    assert "40 deg from x towards y" in said
+    rigid = base.told({p.name: np.inf for p in base.parameters})
+    assert rigid == "The base rocks on its foundation about a point 0.8 m below."
