@@ -22,12 +22,13 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, of_axes
 from sk120stiff.effects.reference import ORDER, TIME
+from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
 OF_RIG = "base_"
-RATE = "rate_"
+RATE, ABOUT = "rate_", "_about_"
 
 
 class _SensorError(LoadError):
@@ -117,29 +118,44 @@ class ForceScale(_RigError):
 class ForceBias(_RigError):
     """The sensor adds a force that the unloaded reading did not have: a constant one, or a drift.
 
-    Strain gauges creep and warm up: what they add goes on from the first reading of the series, by
-    the clock, or by the order of the readings where no time is known.
+    Strain gauges creep and warm up: what they add goes on steadily, by the clock, or by the order
+    of the readings where no time is known. The offset is that in the middle of the series.
 
     Attributes:
         drifts: `TIME` or `ORDER`, with which it goes on; empty: it is constant.
+        about: The middle of the series [s or readings from the first one on].
     """
 
     drifts: str = ""
+    about: float = 0.0
     name: ClassVar[str] = "force_bias"
     former: ClassVar[Mapping[str, str]] = {f"force_{axis}": f"offset_{axis}" for axis in AXES}
     equation: ClassVar[str] = "F_reported - F_true = b, under load alone"
     says: ClassVar[str] = "The force sensor has a constant offset under load."
     also: ClassVar[str] = (
-        f"{_RigError.also}; with {RATE}x and so on, what the sensor adds grows by so much for each "
-        "second, or reading, from the first one on"
+        f"{_RigError.also}; with {RATE}x{ABOUT}300 and so on, what the sensor adds grows by so "
+        "much each second, or reading; the offset is that 300 of them after the first reading"
     )
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
-        """The law that names and units of the parameters tell."""
+        """The law that names and units of the parameters tell.
+
+        Raises:
+            InputError: They tell of no moment, or of several.
+        """
         found = super().at(robot, where, options)
-        drifts = any(name.startswith(RATE) for name in options.shape)
-        return replace(found, drifts=(TIME if options.timed else ORDER) if drifts else "")
+        told = {name.partition(ABOUT)[2] for name in options.shape if name.startswith(RATE)}
+        if not told:
+            return found
+        try:
+            (about,) = (float(each or 0.0) for each in told)
+        except ValueError as error:
+            raise InputError(
+                "the names of the parameters do not tell about which moment the offset drifts",
+                remedy=f"Write {RATE}x{ABOUT}300, and the same number for y and z.",
+            ) from error
+        return replace(found, drifts=TIME if options.timed else ORDER, about=about)
 
     @classmethod
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
@@ -148,10 +164,14 @@ class ForceBias(_RigError):
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Self, ...]:
         """The same in the other frame; a sensor's may drift where the file tells a clock."""
-        plain = replace(self, of_rig=False, drifts="")
-        clock = next((each for each in (TIME, ORDER) if _clock(load_cases, each) is not None), None)
+        plain = replace(self, of_rig=False, drifts="", about=0.0)
         laws = [plain, replace(plain, of_rig=True)]
-        laws += [] if clock is None else [replace(plain, drifts=clock)]
+        for each in (TIME, ORDER):
+            clock = _clock(load_cases, each)
+            if clock is not None:
+                middle = float(f"{0.5 * clock.max():.3g}")
+                laws.append(replace(plain, drifts=each, about=middle))
+                break
         return tuple(law for law in laws if law != self)
 
     def sentence(self) -> str:
@@ -174,9 +194,9 @@ class ForceBias(_RigError):
         return (
             *offset,
             *of_axes(
-                f"{RATE}{{}}", "N/s" if by_clock else "N", plausible=100.0 * typical,
-                typical=typical,
-                meaning="by how much that grows from the first reading on, for each "
+                f"{RATE}{{}}{ABOUT}{self.about:g}", "N/s" if by_clock else "N",
+                plausible=100.0 * typical, typical=typical,
+                meaning="by how much that grows, about the middle of the series, for each "
                 f"{'second' if by_clock else 'reading'}, along {{}} of the {self._frame}",
             ),
         )  # fmt: skip
@@ -192,8 +212,8 @@ class ForceBias(_RigError):
         if not self.drifts:
             return unit
         clock = _clock(load_cases, self.drifts)
-        gone = np.zeros(load_cases.count) if clock is None else clock
-        return np.concatenate([unit, gone[:, None, None] * unit], axis=2)
+        gone = np.full(load_cases.count, self.about) if clock is None else clock
+        return np.concatenate([unit, (gone - self.about)[:, None, None] * unit], axis=2)
 
 
 def _clock(load_cases: LoadCases, of: str) -> Array | None:

@@ -45,9 +45,8 @@ class Model:
         robot: The rigid robot.
         parameters: All parameters, effect by effect.
         provenance: Where the whole came from: data hash, command, date.
-        uncertainty: How well the parameters are known, where a fit said so; a change of a value, or
-            of what is in the model, ends it.
-        catalogue: The effects that there are, those among them that the model has not.
+        uncertainty: How well the parameters are known, where a fit said so; any change ends it.
+        catalogue: Effects that there are, in the model or not.
 
     Examples:
         >>> import sk120stiff as sk
@@ -228,9 +227,8 @@ class Model:
         """
         new = self.values.copy()
         for name, value in {**(values or {}), **named}.items():
-            new[self.names.index(self.parameter(name).name)] = self.parameter(name).spec.internal(
-                value
-            )
+            spec = self.parameter(name).spec
+            new[self.names.index(name)] = spec.internal(value)
         return self.with_values(new)
 
     def known(self, uncertainty: Uncertainty) -> Model:
