@@ -28,6 +28,7 @@ from sk120stiff.robot.rotations import crossed
 
 AXES = "xyz"
 OF_RIG = "base_"
+FRICTION = "friction"
 RATE, ABOUT = "rate_", "_about_"
 
 
@@ -90,16 +91,53 @@ def _of_wrench(rotation: Array) -> Array:
 
 @dataclass(frozen=True)
 class ForceScale(_RigError):
-    """Each force axis reads too much or too little by a share of its own."""
+    """Each force axis reads too much or too little by a share of its own, or a pulley rubs.
 
+    Attributes:
+        rubs: A pulley, or a guide, takes a share of the load while it grows and gives it while it
+            falls.
+    """
+
+    rubs: bool = False
     name: ClassVar[str] = "force_scale"
     former: ClassVar[Mapping[str, str]] = {f"gain_{axis}": f"scale_{axis}" for axis in AXES}
     equation: ClassVar[str] = "F_reported - F_true = s * F_reported, axis by axis"
     says: ClassVar[str] = "The force sensor's axes read too much or too little in proportion."
+    also: ClassVar[str] = (
+        f"{_RigError.also}; {FRICTION}: of the whole load, taken while it grows and given while it "
+        "falls, as by a pulley that rubs"
+    )
+
+    @classmethod
+    def at(cls, robot: Robot, where: str, options: Options) -> Self:
+        """The law that names of the parameters tell."""
+        found = super().at(robot, where, options)
+        return replace(found, rubs=FRICTION in options.shape)
+
+    def other_laws(self, load_cases: LoadCases) -> tuple[Self, ...]:
+        """The same in the other frame; a pulley rubs where loads went up and down."""
+        plain = replace(self, of_rig=False, rubs=False)
+        laws = [plain, replace(plain, of_rig=True)]
+        if load_cases.branch.min(initial=1.0) < 0.0 < load_cases.branch.max(initial=-1.0):
+            laws.append(replace(plain, rubs=True))
+        return tuple(law for law in laws if law != self)
+
+    def sentence(self) -> str:
+        """What happens."""
+        if not self.rubs:
+            return super().sentence()
+        return "What the load goes over rubs: a pulley or a guide takes a share of it each way."
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Relative errors of the three force axes."""
+        """Relative errors of the three force axes, or of the load as it goes up and down."""
+        if self.rubs:
+            means = (
+                "share of the load that friction takes while it grows, and that is left on while "
+                "it falls"
+            )
+            return (ParameterSpec(FRICTION, "1", "1", plausible=0.15, typical=0.01, lower=0.0,
+                                  meaning=means),)  # fmt: skip
         return of_axes(
             f"scale_{self._along}", "1", plausible=0.12, typical=0.01,
             meaning=f"(reported - true) / reported force along {{}} of the {self._frame}; positive:"
@@ -109,9 +147,22 @@ class ForceScale(_RigError):
     @cached_property
     def generators(self) -> Array:
         """One diagonal element of the force each: what the sensor adds is taken away."""
+        if self.rubs:
+            return -np.eye(6)[None]
         out = np.zeros((3, 6, 6))
         out[range(3), range(3), range(3)] = -1.0
         return out
+
+    def columns(self, x: Array, load_cases: LoadCases) -> Array:
+        """(N, 6, P) derivative of the true load by the parameters."""
+        found = super().columns(x, load_cases)
+        return found * load_cases.branch[:, None, None] if self.rubs else found
+
+    def matrix(self, values: Array, load_cases: LoadCases) -> Array:
+        """(6, 6) derivative of the true load by the reported one; (N, 6, 6) if rows differ."""
+        if not self.rubs:
+            return super().matrix(values, load_cases)
+        return np.asarray(np.eye(6) * (1.0 - values[0] * load_cases.branch)[:, None, None])
 
 
 @dataclass(frozen=True)
