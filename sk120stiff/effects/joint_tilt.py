@@ -17,11 +17,12 @@ from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, VirtualJoint
-from sk120stiff.robot.anatomy import arm_joint, carrier_of, free_joints
+from sk120stiff.robot.anatomy import arm_joint, arm_length, carrier_of, free_joints
 from sk120stiff.robot.rotations import homogeneous
 
 HOUSING = "_of_housing"
 ROLL = "stiffness_about"
+CLEAR = 0.1  # of the arm's length: heights over the foundation from which on the two differ
 
 
 @dataclass(frozen=True)
@@ -77,11 +78,18 @@ class JointTilt(StraightPart):
         return replace(found, askew=askew, housing=housing, rolls=rolls)
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
-        """Askew of the axes, by those of the housing, and out of proportion."""
-        plain = JointTilt(self.where, self.scale)
-        turns = arm_joint(load_cases.robot, self.where).revolute
-        further = replace(plain, askew=True, housing=True) if turns else replace(plain, rolls=True)
-        laws = (plain, replace(plain, askew=True), further)
+        """Askew of the axes, by those of the housing, and out of proportion.
+
+        A housing on the base, near the point about which the base rocks, is the base that rocks.
+        """
+        robot, plain = load_cases.robot, JointTilt(self.where, self.scale)
+        joint, carrier = arm_joint(robot, self.where), carrier_of(robot, self.where)
+        height = float(np.linalg.norm(joint.placement[:3, 3] - robot.foundation))
+        laws = [plain, replace(plain, askew=True)]
+        if not joint.revolute:
+            laws.append(replace(plain, rolls=True))
+        elif carrier is not None or height > CLEAR * arm_length(robot):
+            laws.append(replace(plain, askew=True, housing=True))
         straight = tuple(law for law in laws if law != self)
         return (*straight, *super(JointTilt, plain).other_laws(load_cases))
 

@@ -19,7 +19,7 @@ from sk120stiff.measurements import EXACT
 NEAR = 0.05  # standard deviations within which draws and instruments are as likely as can be
 ROUNDS = 5  # of weighing draws, whose size is smaller once others have what is theirs
 HALVINGS = 12  # of estimates under which the arm has no equilibrium
-VALLEY = 40  # steps after which a gain that is still on its way leads down a valley
+VALLEY = 15  # steps after which a gain that is still on its way leads down a valley
 
 
 def solve(problem: Problem, *, method: Method = "trf") -> Fit:

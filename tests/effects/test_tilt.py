@@ -117,7 +117,8 @@ def test_each_kind_of_joint_has_its_own_other_laws(robot: Robot) -> None:
         names = {p.name for law in usual.other_laws(cases) for p in law.parameters}
         slides = dict(zip(robot.actuated, robot.prismatic, strict=True))[place]
         assert (ROLL in names) == slides
-        assert (f"stiffness_along{HOUSING}" in names) == (not slides)
+        near = place == "pan"  # 0.13 m over the base, of an arm of 1.6 m: the base that rocks
+        assert (f"stiffness_along{HOUSING}" in names) == (not slides and not near)
         assert "cross_stiffness" in names
 
 
