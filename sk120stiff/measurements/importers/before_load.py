@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import POSITIONS
 from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.load_pairs import LOADS, POSITIONS
+from sk120stiff.measurements.importers.load_pairs import LOADS
 from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
 from sk120stiff.measurements.importers.pairing import label_of, paired
 from sk120stiff.measurements.importers.told import Told, numbers
@@ -48,15 +49,11 @@ def with_before(sheet: Sheet, before: Sheet, told: Told) -> Sheet:
     whole = paired(pushed, _labelled(apart), "positions without load")
     _refuse_the_same(whole, before)
     whole = _with_joints_once(whole, told)
-    said = f"The positions of {sheet.path.name} are under load."
-    if told.wrench is not None and not any(whole.get(name) for name in LOADS):
+    if told.wrench is not None and not whole.those(*LOADS):
         count = Column("--wrench", "load", None, "", ("1",) * len(whole.lines))
-        whole = replace(whole, columns=(*whole.columns, count))
-    return replace(
-        whole,
-        title=f"{sheet.title}, with {before.path.name}",
-        notes=(*whole.notes, said),
-    )
+        whole = whole.exchanged((), count)
+    whole = replace(whole, title=f"{sheet.title}, with {before.path.name}")
+    return whole.noting(f"The positions of {sheet.path.name} are under load.")
 
 
 def _renamed(sheet: Sheet, kind: str) -> tuple[Column, ...]:
@@ -76,10 +73,7 @@ def _labelled(before: Sheet) -> Sheet:
 
 
 def _refuse_loads(before: Sheet) -> None:
-    for name in LOADS:
-        column = before.get(name)
-        if column is None:
-            continue
+    for column in before.those(*LOADS):
         values = numbers(before, column)
         if values.any():
             raise InputError(

@@ -106,7 +106,7 @@ def _step(clock: Array) -> float:
 
 def clock_of(sheet: Sheet) -> tuple[Column, ...]:
     """The columns of a clock, date and time."""
-    return tuple(c for word in ("date", "time") if (c := sheet.get(word)) and all(c.cells))
+    return tuple(c for c in sheet.those("date", "time") if all(c.cells))
 
 
 def _shown(columns: Sequence[Column]) -> str:

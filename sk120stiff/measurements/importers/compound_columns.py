@@ -18,10 +18,10 @@ from sk120stiff.measurements.importers.compound_headers import (
     compound,
     is_hung_mass,
 )
+from sk120stiff.measurements.importers.contract import Meanings
 from sk120stiff.measurements.importers.orientation_columns import NUMBERED
 from sk120stiff.measurements.importers.words import unit_of_header
 
-Meanings = list[tuple[str, float] | None]
 _AXES = {"place": ("x", "y", "z"), "turn": ("qw", "qx", "qy", "qz")}
 # Meanings beside which no other place is sought; where the marker sits is not told from the
 # robot's own pose, which is asked for.

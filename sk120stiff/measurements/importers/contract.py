@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 from sk120stiff import files
 from sk120stiff.errors import InputError, listed
@@ -84,6 +84,7 @@ class Guess(NamedTuple):
 
 
 NO = Guess(0.0)
+Meanings = list[tuple[str, float] | None]  # of columns, as `words.meaning_of` tells them
 
 
 @dataclass(frozen=True)
@@ -184,9 +185,13 @@ class Sheet:
         """The column of that meaning."""
         return next((c for c in self.columns if c.meaning == meaning), None)
 
+    def those(self, *meanings: str) -> list[Column]:
+        """The columns of these meanings, as far as they are there."""
+        return [c for meaning in meanings if (c := self.get(meaning)) is not None]
+
     def has(self, *meanings: str) -> bool:
         """Are all of them there?"""
-        return all(self.get(meaning) is not None for meaning in meanings)
+        return len(self.those(*meanings)) == len(meanings)
 
     def rows(self, picked: Sequence[int]) -> Sheet:
         """Some of the readings."""
@@ -197,6 +202,23 @@ class Sheet:
             lines=tuple(self.lines[k] for k in picked),
             rank=tuple(self.rank[k] for k in picked) if self.rank else (),
         )
+
+    def exchanged(self, gone: Sequence[Column], *made: Column) -> Sheet:
+        """Without some columns, used or spare; others stand behind the rest."""
+        columns, spare = (
+            tuple(c for c in kind if not any(c is g for g in gone))
+            for kind in (self.columns, self.spare)
+        )
+        return replace(self, columns=(*columns, *made), spare=spare)
+
+    def swapped(self, column: Column, **changes: Any) -> Sheet:
+        """With changes to a column, in its place."""
+        new = replace(column, **changes)
+        return replace(self, columns=tuple(new if c is column else c for c in self.columns))
+
+    def noting(self, *sentences: str) -> Sheet:
+        """With what was decided, behind the notes so far."""
+        return replace(self, notes=(*self.notes, *sentences))
 
     def place(self, column: Column, row: int | None = None) -> str:
         """File, line and column for a message."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.columns import QUATERNION
+from sk120stiff.measurements.columns import POSITIONS, QUATERNION, UNCERTAINTIES
 from sk120stiff.measurements.importers.clock import EITHER_WAY, since_1970, since_first
 from sk120stiff.measurements.importers.compound_columns import COMMANDED_JOINT
 from sk120stiff.measurements.importers.contract import Column, Sheet
@@ -26,14 +26,12 @@ from sk120stiff.measurements.importers.told import (
     quantity,
     refuse_other_joints,
     texts,
+    two_units,
     unit_of,
 )
 from sk120stiff.measurements.importers.unread_axes import displacements
 
 Written = tuple[tuple[str, tuple[str, ...]], ...]
-POSITIONS, SIGMAS = ("x", "y", "z"), ("sx", "sy", "sz")
-
-
 LABELS = ("order", "marker", "series", "station", "branch", "repeat")  # taken over as they stand
 
 
@@ -179,9 +177,9 @@ def _measured(
     sheet: Sheet, told: Told
 ) -> tuple[Array, Written, list[Column], Array | None, list[str]]:
     """(N, 3) positions or displacements [m], as they are written, and the columns they are from."""
-    nominal = [c for axis in POSITIONS if (c := sheet.get(f"nominal {axis}"))]
-    if sheet.has(*POSITIONS):
-        columns = [c for name in POSITIONS if (c := sheet.get(name))]
+    nominal = sheet.those(*(f"nominal {axis}" for axis in POSITIONS))
+    columns = sheet.those(*POSITIONS)
+    if len(columns) == len(POSITIONS):
         units = [unit_of(sheet, c, "length", told) for c in columns]
         values = [quantity(sheet, c, "length", u) for c, u in zip(columns, units, strict=True)]
         written = tuple(
@@ -212,11 +210,7 @@ def _summed(
         numbers(sheet, a), numbers(sheet, b)
         units = {unit_of(sheet, c, "length", told) for c in (a, b)}
         if len(units) > 1:
-            raise InputError(
-                f"{a.header} and {b.header} have different units",
-                where=str(sheet.path),
-                remedy="Export both in one unit.",
-            )
+            raise two_units(sheet, a, b)
         (unit,) = units
         pairs = [(Decimal(p), Decimal(q)) for p, q in zip(a.cells, b.cells, strict=True)]
         total = replace(a, cells=tuple(str(p + q) for p, q in pairs))
@@ -236,7 +230,7 @@ _Group = tuple[list[tuple[Column, str, tuple[str, ...]]], list[str]]
 
 
 def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Group:
-    columns = [c for name in SIGMAS if (c := sheet.get(name))]
+    columns = sheet.those(*UNCERTAINTIES)
     if len(columns) != 3:
         return [], []
     if told.coverage is not None:
@@ -255,7 +249,7 @@ def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Gr
         else "Stated uncertainties are taken for standard ones (k = 1; --coverage 2: twice those)."
     ]
     found = []
-    for name, column, used in zip(SIGMAS, columns, columns_used, strict=True):
+    for name, column, used in zip(UNCERTAINTIES, columns, columns_used, strict=True):
         own = column.unit
         if own is None:
             notes = [*notes[:1], f"Uncertainties are in {unit}, as the positions are."]
@@ -265,7 +259,7 @@ def _sigmas(sheet: Sheet, told: Told, unit: str, reasons: dict[int, str]) -> _Gr
 
 def _turns(sheet: Sheet, told: Told, *, displaced: bool) -> _Group:
     """How the load turned the tool, beside displacements."""
-    columns = [c for axis in POSITIONS if (c := sheet.get(f"turn {axis}"))]
+    columns = sheet.those(*(f"turn {axis}" for axis in POSITIONS))
     found = []
     for column in columns if displaced else []:
         axis = column.meaning[-1]
@@ -335,7 +329,7 @@ def _clock(
 
 
 def _markers(sheet: Sheet, told: Told) -> tuple[tuple[str, ...], dict[str, Array]]:
-    columns = [c for axis in POSITIONS if (c := sheet.get(f"tcp {axis}"))]
+    columns = sheet.those(*(f"tcp {axis}" for axis in POSITIONS))
     if len(columns) != 3:
         return (), {}
     values = np.column_stack(

@@ -6,8 +6,9 @@ import re
 from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import POSITIONS
 from sk120stiff.measurements.importers.contract import NO, Column, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout import POSITION, Layout, layout_of, sheet_of
+from sk120stiff.measurements.importers.layout import Layout, layout_of, sheet_of
 from sk120stiff.measurements.importers.words import meaning_of, unit_of_header
 
 _MARKER = re.compile(
@@ -29,7 +30,7 @@ class Figaroh:
     def sniff(self, source: Source) -> Guess:
         """Columns x1, y1 ... in the header."""
         names = _headers(source) if source.role == "points" else []
-        if not set(POSITION) & set(names) and any(_axis_of(name) for name in names):
+        if not set(POSITIONS) & set(names) and any(_axis_of(name) for name in names):
             return Guess(0.9, _why(source))
         return NO
 
@@ -44,7 +45,7 @@ class Figaroh:
         numbers = sorted({number for number, _ in found})
         chosen = numbers if source.marker is None else [_chosen(source, numbers)]
         turns = {turn for name in _headers(source) if (turn := _turn_of(name))}
-        turned = {(number, axis) for number in chosen for axis in POSITION} <= turns
+        turned = {(number, axis) for number in chosen for axis in POSITIONS} <= turns
         sheets = {number: self._of(source, number, set(found), turned=turned) for number in chosen}
         if source.marker is not None or len(sheets) == 1:
             return replace(next(iter(sheets.values())), marker=source.marker)
@@ -55,13 +56,13 @@ class Figaroh:
     ) -> Sheet:
         """The readings of one marker; `turned`: with its orientation, phix1 and so on."""
         kind = "d" if (number, "dx") in found else ""
-        for axis in POSITION:
+        for axis in POSITIONS:
             if (number, kind + axis) not in found:
                 raise InputError(
                     f"the column '{kind}{axis}{number}' is missing",
                     where=source.grid.place(0),
                     remedy="A marker has three columns: "
-                    f"{', '.join(f'{kind}{axis}{number}' for axis in POSITION)}.",
+                    f"{', '.join(f'{kind}{axis}{number}' for axis in POSITIONS)}.",
                 )
 
         def meaning(name: str, actuated: tuple[str, ...]) -> tuple[str, float] | None:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 from sk120stiff import units
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.columns import POSITIONS
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import Grid, is_number
 from sk120stiff.measurements.importers.load_states import WITH, WITHOUT, state_of, with_states
@@ -20,7 +21,6 @@ from sk120stiff.measurements.importers.words import is_unit, kind_of, meaning_of
 SEARCHED = 80  # rows that may stand above the headers
 FEWEST = 3  # columns that the lower row, alone or with the upper one, names at least
 SHORTEST = 3  # letters of a word above x y z; fewer may be the name of a marker, if no unit follows
-AXES = ("x", "y", "z")
 _MARKERS = ("nominal x", "measured x", "tcp x")  # words such as Target, Tracker, Tool: markers, too
 _NO_GROUP = ("x", "orientation x", "qx", "tx")
 Row = tuple[str, ...]
@@ -77,7 +77,7 @@ def _joined(grid: Grid, at: int, actuated: Row) -> Grid | None:
         return None
     rows, lines = list(grid.rows), list(grid.lines)
     rows[at] = tuple(headers)
-    if not any(name.lower() in AXES and k not in told for k, (name, _) in enumerate(named)):
+    if not any(name.lower() in POSITIONS and k not in told for k, (name, _) in enumerate(named)):
         del rows[at - 1], lines[at - 1]  # else names of markers may stand there
     said = f"headers of lines {grid.lines[at - 1]} and {grid.lines[at]} together"
     how = f"{grid.how}, {said}" if grid.how else said
@@ -104,9 +104,9 @@ def _told(above: Sequence[str], below: Sequence[str], where: str) -> dict[int, s
     """
     groups: dict[str, list[int]] = {}
     for k, (cell, name) in enumerate(zip(above, below, strict=True)):
-        if cell and name.lower() in AXES:
+        if cell and name.lower() in POSITIONS:
             groups.setdefault(cell, []).append(k)
-    whole = {c: p for c, p in groups.items() if [below[k].lower() for k in p] == list(AXES)}
+    whole = {c: p for c, p in groups.items() if [below[k].lower() for k in p] == list(POSITIONS)}
     names = {cell: unit_of_header(cell)[0] for cell in whole}
     called = _called(names, where)
     out = {k: f"{called[c]} {below[k]}" for c, p in whole.items() if c in called for k in p}

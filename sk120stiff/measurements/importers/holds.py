@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
+from sk120stiff.measurements.columns import FORCES, MOMENTS
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.held_orientations import held_orientations
-from sk120stiff.measurements.importers.loads import FORCES, MOMENTS
 from sk120stiff.measurements.importers.pose_labels import near_poses
 from sk120stiff.measurements.poses import rows_at_rest
 
@@ -186,12 +186,8 @@ def one_reading_each(draft: Draft, holds: Holds, notes: Sequence[str]) -> Sheet:
     if sheet.get("pose") is None and len({tuple(row) for row in draft.loads.wrench[middle]}) > 1:
         q = draft.joints.values[middle]
         columns = (*columns, Column("standstill", "pose", None, "", near_poses(q)))
-    return replace(
-        sheet.rows(middle),
-        columns=columns,
-        spare=tuple(map(cut, sheet.spare)),
-        notes=(*sheet.notes, *notes, *told),
-    )
+    whole = replace(sheet.rows(middle), columns=columns, spare=tuple(map(cut, sheet.spare)))
+    return whole.noting(*notes, *told)
 
 
 def as_repeats(draft: Draft) -> Sheet | None:
@@ -235,13 +231,9 @@ def as_repeats(draft: Draft) -> Sheet | None:
     alone = ""
     if len(holds.changing):
         alone = f"; {len(holds.changing)} rows under loads that did not last keep theirs"
-    return replace(
-        sheet,
-        columns=tuple(map(mean_loads(holds.rows), sheet.columns)),
-        notes=(
-            *sheet.notes,
-            f"In {len(holds.rows)} holds, of {typical} rows in the median, the arm stood under one "
-            f"load, which was read with a noise of {holds.say()}. All rows of a hold have its mean "
-            f"as their load: they are repeats of one pose and load{alone}.{told}",
-        ),
+    averaged = replace(sheet, columns=tuple(map(mean_loads(holds.rows), sheet.columns)))
+    return averaged.noting(
+        f"In {len(holds.rows)} holds, of {typical} rows in the median, the arm stood under one "
+        f"load, which was read with a noise of {holds.say()}. All rows of a hold have its mean "
+        f"as their load: they are repeats of one pose and load{alone}.{told}"
     )

@@ -225,7 +225,7 @@ def _of_loads(sheet: Sheet) -> list[str]:
 def _with_column(sheet: Sheet, mass: float, stated: str) -> Sheet:
     text = repr(round(mass, 9))  # 500 g are 0.5 kg to the digit
     column = Column("(mass)", "payload", "kg", stated, (text,) * len(sheet.lines))
-    return replace(sheet, columns=(*sheet.columns, column))
+    return sheet.exchanged((), column)
 
 
 def _told_mass(sheet: Sheet) -> str:

@@ -7,8 +7,8 @@ import re
 from collections.abc import Sequence
 
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.importers.contract import Meanings
 
-Meanings = list[tuple[str, float] | None]
 _NAME = re.compile(r"(?P<of>.*?)(?:\b|_)names?[\s_./]*[\[(]?(?P<number>\d+)[\])]?")
 _VALUE = re.compile(r"(?P<of>.*?)(?:\b|_)positions?[\s_./]*[\[(]?(?P<number>\d+)[\])]?")
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 
 from sk120stiff import units
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import DISPLACEMENTS, FORCES, POSITIONS
 from sk120stiff.measurements.importers.clock import in_seconds
 from sk120stiff.measurements.importers.compound_columns import with_compounds
-from sk120stiff.measurements.importers.contract import Column, Sheet, Source
+from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet, Source
 from sk120stiff.measurements.importers.gauge_units import counted_unit, multiplied
 from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.headerless import cut, no_rows, numeric
@@ -20,7 +21,6 @@ from sk120stiff.measurements.importers.masses import with_masses
 from sk120stiff.measurements.importers.matrix_columns import with_matrices
 from sk120stiff.measurements.importers.orientation_columns import with_quaternions
 from sk120stiff.measurements.importers.unread_axes import (
-    AXES,
     BLANK,
     GAUGE,
     axes_among,
@@ -41,19 +41,18 @@ from sk120stiff.measurements.importers.words import (
     with_torques,
 )
 
-POSITION = ("x", "y", "z")
 NEEDED = {
     "points": (
-        POSITION,
+        POSITIONS,
         ("measured x", "measured y", "measured z"),
         ("nominal x", "nominal y", "nominal z"),
         ("loaded x", "loaded y", "loaded z"),
-        *((axis,) for axis in (*AXES, GAUGE)),
-        *((f"loaded {word}", f"unloaded {word}") for word in (*POSITION, GAUGE)),
+        *((axis,) for axis in (*DISPLACEMENTS, GAUGE)),
+        *((f"loaded {word}", f"unloaded {word}") for word in (*POSITIONS, GAUGE)),
     ),
     "joints": (("joint 1",), ("joint 0",)),
     "loads": tuple(
-        (word,) for word in ("fx", "fy", "fz", "payload", "load", "direction", "force direction")
+        (word,) for word in (*FORCES, "payload", "load", "direction", "force direction")
     ),
 }
 SEARCHED = 80  # rows that may stand above the headers
@@ -199,7 +198,7 @@ def _understood(
     meaning: Meaning,
     below: tuple[tuple[str, ...], ...],
     stated: Sequence[str | None] | None = None,
-) -> tuple[list[tuple[str, float] | None], list[str | None], list[str]]:
+) -> tuple[Meanings, list[str | None], list[str]]:
     """What columns mean, each by its name and by those beside it, their units, and what was chosen.
 
     Units are those that are `stated` in headers or in a row of units, else those of the headers.

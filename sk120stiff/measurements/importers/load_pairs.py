@@ -8,15 +8,15 @@ from decimal import Decimal
 from typing import Literal, TypeVar
 
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.columns import FORCES, MOMENTS, POSITIONS
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
-from sk120stiff.measurements.importers.told import numbers
+from sk120stiff.measurements.importers.told import numbers, two_units
 from sk120stiff.measurements.importers.unread_axes import GAUGE
 
 T = TypeVar("T")
 
-POSITIONS = ("x", "y", "z")
-LOADS = ("fx", "fy", "fz", "mx", "my", "mz", "payload", "load")
+LOADS = (*FORCES, *MOMENTS, "payload", "load")
 _OWN = {  # has every row a zero reading of its own?
     True: "Every row has a zero reading of its own (displacement: {zero: separate}).",
     False: "Rows of one pose share a zero reading (displacement: {zero: shared}).",
@@ -37,7 +37,7 @@ def unfolded(sheet: Sheet) -> Sheet:
         InputError: Half of the pairs is missing, their units differ, or no column says the load.
     """
     names = [f"{kind} {axis}" for kind in (WITHOUT, WITH) for axis in POSITIONS]
-    if not any(sheet.get(name) for name in (*names, f"{WITH} {GAUGE}")):
+    if not sheet.those(*names, f"{WITH} {GAUGE}"):
         return sheet
     some = _differences(sheet)
     if some is not None:
@@ -61,11 +61,12 @@ def unfolded(sheet: Sheet) -> Sheet:
         free, pushed = (sheet.get(f"{kind} {axis}") for kind in (WITHOUT, WITH))
         if free is None or pushed is None:
             continue
-        _refuse_two_units(sheet, free, pushed)
+        if free.unit != pushed.unit:
+            raise two_units(sheet, free, pushed)
         header = f"{free.header}, {pushed.header}"
         cells = _woven(free.cells, pushed.cells)
         columns.append(replace(free, header=header, meaning=axis, cells=cells))
-    free_cells = [c.cells for axis in POSITIONS if (c := sheet.get(f"{WITHOUT} {axis}"))]
+    free_cells = [c.cells for c in sheet.those(*names[: len(POSITIONS)])]
     own = len(set(zip(*free_cells, strict=True))) == len(sheet.lines)
     left = tuple(
         f"column {c.header}: one for two readings" for c in sheet.columns if c.meaning in _OF_ONE
@@ -87,7 +88,7 @@ def unfolded(sheet: Sheet) -> Sheet:
 
 
 def _refuse_no_load(sheet: Sheet) -> None:
-    if not any(sheet.get(name) for name in LOADS):
+    if not sheet.those(*LOADS):
         raise InputError(
             "positions stand there with and without load, and no column says the load",
             where=str(sheet.path),
@@ -106,7 +107,7 @@ def _differences(sheet: Sheet) -> Sheet | None:
         InputError: As `unfolded`.
     """
     known = (*POSITIONS, GAUGE)
-    words = [w for w in known if any(sheet.get(f"{kind} {w}") for kind in (WITHOUT, WITH))]
+    words = [w for w in known if sheet.those(f"{WITHOUT} {w}", f"{WITH} {w}")]
     pairs = {
         word: (free, pushed)
         for word in words
@@ -117,7 +118,8 @@ def _differences(sheet: Sheet) -> Sheet | None:
     _refuse_no_load(sheet)
     made, said = [], []
     for word, (free, pushed) in pairs.items():
-        _refuse_two_units(sheet, free, pushed)
+        if free.unit != pushed.unit:
+            raise two_units(sheet, free, pushed)
         for column in (free, pushed):
             numbers(sheet, column)
         both = zip(free.cells, pushed.cells, strict=True)
@@ -138,15 +140,6 @@ def _differences(sheet: Sheet) -> Sheet | None:
         zero=_ZERO[own],
         subtracted=True,
     )
-
-
-def _refuse_two_units(sheet: Sheet, free: Column, pushed: Column) -> None:
-    if free.unit != pushed.unit:
-        raise InputError(
-            f"{free.header} and {pushed.header} have different units",
-            where=str(sheet.path),
-            remedy="Export both in one unit.",
-        )
 
 
 def _read_anew(sheet: Sheet, before: Sequence[tuple[str, ...]]) -> bool:

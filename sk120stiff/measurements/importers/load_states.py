@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from sk120stiff.measurements.importers.contract import Meanings
+
 WITHOUT, WITH = "unloaded", "loaded"
 _WITHOUT = (
     "unloaded|no load|without(?: the)?(?: load)?|zero load|load free|free|undeformed|"
@@ -31,7 +33,6 @@ _NOUNS = re.compile(  # what was read, which says nothing of the load
 _DIFFERENCE = "(?:delta|\N{GREEK SMALL LETTER DELTA}|\N{INCREMENT})"
 _DELTA = re.compile(rf"{_DIFFERENCE} ?[xyz](?![a-z])|[xyz] ?{_DIFFERENCE}(?![a-z])")
 _PLACES = ("", "measured ", "nominal ", f"{WITHOUT} ", f"{WITH} ")
-Meanings = list[tuple[str, float] | None]
 
 
 def _longest_first(words: str) -> re.Pattern[str]:

@@ -11,6 +11,7 @@ import numpy as np
 from sk120stiff import units
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.columns import DISPLACEMENTS, FORCES, MOMENTS
 from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.compound_headers import of_a_sensor
 from sk120stiff.measurements.importers.contract import Column, Sheet
@@ -20,8 +21,6 @@ from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.measurements.poses import rows_by_label
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition
-FORCES = ("fx", "fy", "fz")
-MOMENTS = ("mx", "my", "mz")
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +56,7 @@ def loads_of(sheet: Sheet, told: Told) -> Loads:
         for kind, names in (
             ("force columns", (*FORCES, *MOMENTS)), ("payload", ("payload",)), ("load", ("load",)),
         )
-        if any(sheet.get(name) for name in names)
+        if sheet.those(*names)
     ]  # fmt: skip
     if told.forces_rpy is not None and told.forces not in ("base", "tool"):
         raise InputError(
@@ -134,7 +133,7 @@ def _refuse_a_force_along_nothing(sheet: Sheet) -> None:
     Raises:
         InputError: Such a column stands beside displacements.
     """
-    for column in sheet.spare if any(map(sheet.get, ("dx", "dy", "dz", "gauge"))) else ():
+    for column in sheet.spare if sheet.those(*DISPLACEMENTS, "gauge") else ():
         if column.unit and units.is_kind(column.unit, "force"):
             raise InputError(
                 f"nothing says along which axis {column.header!r} acts",
@@ -183,13 +182,13 @@ def _hung(sheet: Sheet, column: Column, told: Told, W: Array) -> Loads:
 
 
 def _forces(sheet: Sheet, told: Told, W: Array) -> Loads:
-    if not any(map(sheet.get, FORCES)):
+    if not sheet.those(*FORCES):
         raise InputError(
             "there are moments, and no column fx, fy, fz holds a force",
             where=str(sheet.path),
             remedy="Add the forces: fx, fy, fz; with zeros where none acted.",
         )
-    groups = [FORCES, MOMENTS] if any(map(sheet.get, MOMENTS)) else [FORCES]
+    groups = [FORCES, MOMENTS] if sheet.those(*MOMENTS) else [FORCES]
     missing = [name for group in groups for name in group if sheet.get(name) is None]
     if missing:
         _refuse_a_force_by_another_name(sheet, missing)

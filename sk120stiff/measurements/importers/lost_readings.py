@@ -28,7 +28,7 @@ def without_lost(sheet: Sheet) -> Sheet:
     """
     lost: dict[int, str] = {}
     for kind, zero in (*((kind, True) for kind in _POSITIONS), ("d", False)):
-        columns = [c for axis in "xyz" if (c := sheet.get(f"{kind}{axis}"))]
+        columns = sheet.those(*(f"{kind}{axis}" for axis in "xyz"))
         if len(columns) < 3:
             continue
         headers = ", ".join(column.header for column in columns)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import dataclasses
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import POSITIONS
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import Grid
 from sk120stiff.measurements.importers.words import unit_of_header
 
 SEARCHED = 20  # rows that may stand above the headers
-AXES = ("x", "y", "z")
 
 
 def with_numbered_markers(source: Source) -> Source:
@@ -32,7 +32,7 @@ def with_numbered_markers(source: Source) -> Source:
 def _triples(row: tuple[str, ...]) -> list[int]:
     """Where X of every X Y Z in turn stands; none where other cells are called so."""
     words = tuple(unit_of_header(cell)[0].lower() for cell in row)
-    first = [k for k in range(len(words) - 2) if words[k : k + 3] == AXES]
+    first = [k for k in range(len(words) - 2) if words[k : k + 3] == POSITIONS]
     return first if words.count("x") == words.count("z") == len(first) else []
 
 
@@ -59,7 +59,7 @@ def _numbered(source: Source, grid: Grid, at: int, first: list[int], names: list
         stated = [unit_of_header(cell)[1] for cell in headers[place : place + 3]]
         headers[place : place + 3] = [
             f"M{number} {axis} [{unit}]" if unit else f"M{number} {axis}"
-            for axis, unit in zip(AXES, stated, strict=True)
+            for axis, unit in zip(POSITIONS, stated, strict=True)
         ]
     above = tuple(
         (line, "  ".join(cell for cell in row if cell))

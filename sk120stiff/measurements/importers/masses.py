@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from sk120stiff.measurements.importers.contract import Meanings
+
 MASSES = {"kg": 1.0, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237}  # kg
 _PAYLOAD = "payload|nutzlast|traglast|zuladung|charge utile|carga util|carga útil|carico utile"
 _LOAD = (
@@ -14,7 +16,6 @@ _LOAD = (
 _UNMISTAKEN = frozenset(_PAYLOAD.split("|"))
 _KNOWN = frozenset((*_UNMISTAKEN, *_LOAD.split("|")))
 LOAD_WORDS = _KNOWN  # in small letters, for a mass on the tool wherever its unit is one
-Meanings = list[tuple[str, float] | None]
 
 
 def with_masses(

@@ -9,9 +9,9 @@ from itertools import product
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.measurements.importers.contract import Meanings
 from sk120stiff.measurements.importers.grid import is_number
 
-Meanings = list[tuple[str, float] | None]
 _NUMBER = re.compile(
     r"(?P<of>.*?)[\s_]*[\[(]?(?P<row>[0-4])[\])]?[\s_,]*[\[(]?(?P<col>[0-4])[\])]?"
 )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sk120stiff.measurements.columns import QUATERNION
-from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet
 from sk120stiff.measurements.importers.words import unit_of_header
 
 # By which names three angles stand side by side; the order is that of the numbers in a row.
@@ -36,19 +36,16 @@ def named(sheet: Sheet) -> Sheet:
 
 def orientation_columns(sheet: Sheet) -> tuple[Column, ...]:
     """Columns of an orientation that belong together; none where there are not."""
-    four = [column for name in QUATERNION if (column := sheet.get(name))]
-    if len(four) == len(QUATERNION):
-        return tuple(four)
-    for names in (*MATRICES, *NAMES):
-        found = [c for name in names.split() if (c := sheet.get(f"orientation {name}"))]
-        if len(found) == len(names.split()):
-            return tuple(found)
+    angles = ([f"orientation {name}" for name in names.split()] for names in (*MATRICES, *NAMES))
+    for names in (QUATERNION, *angles):
+        if sheet.has(*names):
+            return tuple(sheet.those(*names))
     return ()
 
 
 def with_quaternions(
     names: Sequence[str], meanings: Sequence[tuple[str, float] | None]
-) -> list[tuple[str, float] | None]:
+) -> Meanings:
     """Meanings of columns where q1 to q4 are no joints: those have names of their own beside."""
     plain, out = [name.strip().lower() for name in names], list(meanings)
     places = [plain.index(name) for name in NUMBERED if plain.count(name) == 1]

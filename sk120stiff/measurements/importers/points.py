@@ -6,25 +6,19 @@ import re
 from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.columns import DISPLACEMENTS, FORCES, MOMENTS, POSITIONS
 from sk120stiff.measurements.importers.compound_columns import groups_of, shown
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
 from sk120stiff.measurements.importers.headerless import of_other_columns, shaped
-from sk120stiff.measurements.importers.layout import (
-    POSITION,
-    SEARCHED,
-    Layout,
-    layout_of,
-    sheet_of,
-)
+from sk120stiff.measurements.importers.layout import SEARCHED, Layout, layout_of, sheet_of
 from sk120stiff.measurements.importers.unread_axes import gauge_pair
 from sk120stiff.measurements.importers.words import kind_of, unit_of_header
 
 _BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
 _HOLDS = (  # what a table is of, by the meanings of its columns
-    ("x, y, z", ("x", "y", "z")), ("dx, dy, dz", ("dx", "dy", "dz")),
+    ("x, y, z", POSITIONS), ("dx, dy, dz", DISPLACEMENTS),
     ("a gauge and its direction", ("gauge",)), ("dx", ("dx",)), ("dy", ("dy",)), ("dz", ("dz",)),
 )  # fmt: skip
-_FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
 @dataclass(frozen=True)
@@ -169,9 +163,9 @@ def _refuse_some_coordinates(source: Source, joints: Layout) -> None:
         InputError: There are such.
     """
     there = {m[0] for m in joints.meanings if m}
-    if not there & set(POSITION):
+    if not there & set(POSITIONS):
         begun = [h for h in joints.headers if (m := _BEGUN.match(h)) and m[1].lower() not in there]
-        if len(begun) < len(POSITION):
+        if len(begun) < len(POSITIONS):
             return
         raise InputError(
             f"the units of {', '.join(begun)} are not known",
@@ -179,7 +173,7 @@ def _refuse_some_coordinates(source: Source, joints: Layout) -> None:
             remedy="Known lengths are m, mm, um and in: x[mm]; or leave the unit out and give "
             "--length.",
         )
-    missing = [axis for axis in POSITION if axis not in there]
+    missing = [axis for axis in POSITIONS if axis not in there]
     raise InputError(
         f"of x, y, z the columns {', '.join(missing)} are not there"
         if len(missing) > 1
@@ -196,7 +190,7 @@ def _names(source: Source, count: int) -> tuple[str, ...] | None:
     if source.role == "joints":
         known = {len(joints): joints}
     elif source.role == "loads":
-        known = {3: _FORCES[:3], 6: _FORCES, 1: ("payload",)}
+        known = {3: FORCES, 6: (*FORCES, *MOMENTS), 1: ("payload",)}
     else:
-        known = {3: ("x", "y", "z"), 3 + len(joints): ("x", "y", "z", *joints)}
+        known = {3: POSITIONS, 3 + len(joints): (*POSITIONS, *joints)}
     return known.get(count)

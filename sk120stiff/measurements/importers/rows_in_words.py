@@ -10,9 +10,10 @@ import numpy as np
 
 from sk120stiff import units
 from sk120stiff.errors import InputError, listed
+from sk120stiff.measurements.columns import FORCES
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.grid import is_number
-from sk120stiff.measurements.importers.loads import FORCES, STANDARD_GRAVITY
+from sk120stiff.measurements.importers.loads import STANDARD_GRAVITY
 from sk120stiff.measurements.importers.masses import MASSES
 from sk120stiff.measurements.importers.told import Told, numbers
 from sk120stiff.measurements.importers.unread_axes import GAUGE, IN_A_LETTER
@@ -70,7 +71,7 @@ def _with_reading_along(sheet: Sheet) -> Sheet:
     column = sheet.get(IN_A_LETTER)
     if column is None:
         return sheet
-    if not any(sheet.get(word) for word in (GAUGE, f"loaded {GAUGE}")):
+    if not sheet.those(GAUGE, f"loaded {GAUGE}"):
         return _left_out(sheet, column, "no gauge stands beside it")
     along = [_along(cell) for cell in column.cells]
     if None in along:
@@ -90,12 +91,10 @@ def _with_reading_along(sheet: Sheet) -> Sheet:
         )
         for axis in "xyz"
     ]  # fmt: skip
-    new = replace(sheet, columns=(*(c for c in sheet.columns if c is not column), *made))
     shown = ", ".join(dict.fromkeys(column.cells))
-    return _noting(
-        new,
+    return sheet.exchanged([column], *made).noting(
         f"The reading of the gauge is taken to rise along {column.header} ({shown}), axes of the "
-        "base.",
+        "base."
     )
 
 
@@ -108,13 +107,12 @@ def _with_branches(sheet: Sheet) -> Sheet:
     if not known or not known <= _BRANCH_OF.keys():
         return sheet
     cells = tuple("" if _empty(word) else _BRANCH_OF[word] for word in words)
-    ours = replace(column, meaning="branch", cells=cells)
-    new = replace(sheet, columns=tuple(ours if c is column else c for c in sheet.columns))
+    new = sheet.swapped(column, meaning="branch", cells=cells)
     foreign = [word for word in dict.fromkeys(column.cells) if word.lower() in known]
     if set(foreign) <= {"load", "unload"}:
         return new
     pairs = [f"{word} is {_BRANCH_OF[word.lower()]}" for word in foreign]
-    return _noting(new, f"The column {column.header} tells the branch: {', '.join(pairs)}.")
+    return new.noting(f"The column {column.header} tells the branch: {', '.join(pairs)}.")
 
 
 def _with_repeats(sheet: Sheet) -> Sheet:
@@ -123,12 +121,11 @@ def _with_repeats(sheet: Sheet) -> Sheet:
     if column is None or not all(column.cells):
         return sheet
     if all(is_number(cell) and float(cell).is_integer() for cell in column.cells):
-        cells = tuple(str(int(float(cell))) for cell in column.cells)
-        return _swapped(sheet, column, cells)
+        return sheet.swapped(column, cells=tuple(str(int(float(cell))) for cell in column.cells))
     count = {label: k for k, label in enumerate(dict.fromkeys(column.cells), 1)}
-    new = _swapped(sheet, column, tuple(str(count[cell]) for cell in column.cells))
+    new = sheet.swapped(column, cells=tuple(str(count[cell]) for cell in column.cells))
     shown = listed([f"{label} is {k}" for label, k in list(count.items())[:3]])
-    return _noting(new, f"The column {column.header} counts repetitions: {shown}.")
+    return new.noting(f"The column {column.header} counts repetitions: {shown}.")
 
 
 def _with_forces(sheet: Sheet, direction: Column, told: Told) -> Sheet:
@@ -137,7 +134,7 @@ def _with_forces(sheet: Sheet, direction: Column, told: Told) -> Sheet:
     Raises:
         InputError: As `understood_words`.
     """
-    components = [c for name in FORCES if (c := sheet.get(name))]
+    components = sheet.those(*FORCES)
     if components:
         _refuse_another_axis(sheet, direction, components)
         return _left_out(sheet, direction, "the components of the force stand beside it")
@@ -169,16 +166,10 @@ def _with_forces(sheet: Sheet, direction: Column, told: Told) -> Sheet:
         Column(header, name, unit, stated, tuple(cells[name]), 1.0, size.file) for name in FORCES
     ]
     shown = [word for word in dict.fromkeys(direction.cells) if not _empty(word)]
-    new = replace(
-        sheet,
-        columns=(*(c for c in sheet.columns if c is not size and c is not direction), *made),
-        spare=tuple(c for c in sheet.spare if c is not size),
-    )
     mass = PULLS if unit == "SI" else ""
-    return _noting(
-        new,
+    return sheet.exchanged([size, direction], *made).noting(
         f"fx, fy, fz are made of {size.header}, the size of the force on the robot, and "
-        f"{direction.header}, its direction ({', '.join(shown)}).{mass}",
+        f"{direction.header}, its direction ({', '.join(shown)}).{mass}"
     )
 
 
@@ -201,7 +192,7 @@ def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
     else:
         return sheet
     size = _size(sheet, along[0], told)
-    if size is None or any(sheet.get(name) for name in FORCES):
+    if size is None or sheet.those(*FORCES):
         return sheet
     values, _, unit, stated = _as_force(sheet, size, told)
     is_mass = unit == "SI"  # by the file's own words it pulls elsewhere over a pulley alone
@@ -222,15 +213,9 @@ def _with_force_along(sheet: Sheet, told: Told) -> Sheet:
         Column(header, name, unit, stated, tuple(repr(float(v)) for v in column), 1.0, size.file)
         for name, column in zip(FORCES, (np.array(values)[:, None] * e).T, strict=True)
     ]
-    new = replace(
-        sheet,
-        columns=(*(c for c in sheet.columns if c is not size), *made),
-        spare=tuple(c for c in sheet.spare if c is not size and not any(c is a for a in along)),
-    )
-    return _noting(
-        new,
+    return sheet.exchanged([size, *along], *made).noting(
         f"fx, fy, fz are {size.header}, the size of the force on the robot, times its direction "
-        f"{', '.join(c.header for c in along)}.{PULLS if is_mass else ''}",
+        f"{', '.join(c.header for c in along)}.{PULLS if is_mass else ''}"
     )
 
 
@@ -298,18 +283,6 @@ def _empty(cell: str) -> bool:
     return cell.strip().lower() in _EMPTY
 
 
-def _swapped(sheet: Sheet, column: Column, cells: tuple[str, ...]) -> Sheet:
-    new = replace(column, cells=cells)
-    return replace(sheet, columns=tuple(new if c is column else c for c in sheet.columns))
-
-
 def _left_out(sheet: Sheet, column: Column, why: str) -> Sheet:
-    return replace(
-        sheet,
-        columns=tuple(c for c in sheet.columns if c is not column),
-        unused=(*sheet.unused, f"column {column.header}: {why}"),
-    )
-
-
-def _noting(sheet: Sheet, sentence: str) -> Sheet:
-    return replace(sheet, notes=(*sheet.notes, sentence))
+    unused = (*sheet.unused, f"column {column.header}: {why}")
+    return replace(sheet.exchanged([column]), unused=unused)

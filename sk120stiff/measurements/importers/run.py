@@ -188,7 +188,7 @@ def import_readings(
     ]  # fmt: skip
     sheets = with_masses_of_all(sheets)
     whole = sheets[0] if len(sheets) == 1 else joined(sheets)
-    whole = dataclasses.replace(whole, notes=(*whole.notes, *say_masses(sheets)))
+    whole = whole.noting(*say_masses(sheets))
     draft = drafted(whole, told, robot.actuated, prismatic)
     held = standstills(draft) or as_repeats(draft)
     if held is not None:
@@ -307,7 +307,7 @@ def _sheet(
     sheet = named(unfolded(with_told_mass(sheet, told)))
     if book:
         sheet = without_used(sheet, source.path, used)
-    if under_load(title) and not any(map(sheet.get, LOADS)):
+    if under_load(title) and not sheet.those(*LOADS):
         said = (
             f"By its name the sheet {title} is under a load, and no column says which: it is taken "
             "to be without. Give --loads-file, or a column fx[N], fy[N], fz[N] or payload[kg]."
@@ -333,7 +333,7 @@ def _is_elsewhere(
     if role == "joints":
         return not any(c.meaning.startswith("joint ") for c in sheet.columns)
     pushed = under_load(used[0]) if used else False
-    if told.wrench is not None or not pushed or any(map(sheet.get, LOADS)):
+    if told.wrench is not None or not pushed or sheet.those(*LOADS):
         return False
     return len(fitting_sheets(Source(source.path, source.actuated, role))) == 1
 

@@ -79,7 +79,7 @@ def _the_same(sheets: Sequence[Sheet]) -> list[str]:
     """Whether files that say no load hold the same names, as passes without and with one do."""
     names = [set(c.cells) if (c := label_of(sheet)) else set() for sheet in sheets]
     shared = set.intersection(*names)
-    loads = any(sheet.get(word) for sheet in sheets for word in LOADS)
+    loads = any(sheet.those(*LOADS) for sheet in sheets)
     if loads or len(shared) < SHARED * min(map(len, names)) or not shared:
         return []
     return [

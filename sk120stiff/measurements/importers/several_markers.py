@@ -40,9 +40,8 @@ def of_marker(sheet: Sheet, name: str | None) -> Sheet:
             where=sheet.place(column),
             remedy=f"There are {listed(_names(column.cells))}.",
         )
-    others = tuple(c for c in sheet.columns if c is not column)
-    notes = (*sheet.notes, f"Marker {name} is read.")
-    return replace(sheet, columns=others, notes=notes, marker=name).rows(rows)
+    alone = sheet.exchanged([column]).noting(f"Marker {name} is read.")
+    return replace(alone, marker=name).rows(rows)
 
 
 def with_places(draft: Draft, told: Told) -> Draft:

@@ -106,6 +106,15 @@ def unit_of(sheet: Sheet, column: Column, kind: str, told: Told) -> str:
     return plain(str(written or said))
 
 
+def two_units(sheet: Sheet, one: Column, other: Column) -> InputError:
+    """What is wrong with two columns that belong together."""
+    return InputError(
+        f"{one.header} and {other.header} have different units",
+        where=str(sheet.path),
+        remedy="Export both in one unit.",
+    )
+
+
 def plain(unit: str) -> str:
     """A unit as the headers here write it."""
     return {"°": "deg", "µm": "um", "μm": "um"}.get(unit, unit)

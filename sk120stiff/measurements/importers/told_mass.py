@@ -20,7 +20,7 @@ def with_told_mass(sheet: Sheet, told: Told) -> Sheet:
     Raises:
         InputError: Several columns may be it.
     """
-    if any(sheet.get(name) for name in (*LOADS, "direction", "force direction")):
+    if sheet.those(*LOADS, "direction", "force direction"):
         return sheet
     heavy = [
         c for c in sheet.spare
@@ -29,11 +29,10 @@ def with_told_mass(sheet: Sheet, told: Told) -> Sheet:
     if not heavy:
         left = [c.header for c in sheet.spare] if told.load else []
         said = f"--load {told.load} is of no column; not understood are {listed(left)}."
-        return replace(sheet, notes=(*sheet.notes, said)) if left else sheet
+        return sheet.noting(said) if left else sheet
     names = listed([c.header for c in heavy])
     if told.load != "kg":
-        said = f"{names} may be the mass on the tool: if so, --load kg says it."
-        return replace(sheet, notes=(*sheet.notes, said))
+        return sheet.noting(f"{names} may be the mass on the tool: if so, --load kg says it.")
     if len(heavy) > 1:
         raise InputError(
             f"{names} may each be the mass on the tool",
@@ -41,8 +40,4 @@ def with_told_mass(sheet: Sheet, told: Told) -> Sheet:
             remedy="Call the one that is payload[kg].",
         )
     (own,) = heavy
-    return replace(
-        sheet,
-        columns=(*sheet.columns, replace(own, meaning="payload")),
-        spare=tuple(c for c in sheet.spare if c is not own),
-    )
+    return sheet.exchanged([own], replace(own, meaning="payload"))

@@ -9,13 +9,12 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import listed
-from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.columns import DIRECTIONS, DISPLACEMENTS
+from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet
 from sk120stiff.measurements.importers.load_states import WITH, WITHOUT, state_of
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, texts, unit_of
 
-AXES = ("dx", "dy", "dz")
-GAUGE = "gauge"  # meaning of what a dial gauge reads along ALONG
-ALONG = ("ux", "uy", "uz")
+GAUGE = "gauge"  # meaning of what a dial gauge reads along `DIRECTIONS`
 IN_A_LETTER = "reading direction"  # meaning of a column that has +X, -Z and so on instead
 BLANK = {
     "", "nan", "n/a", "na", "n.a.", "n.a", "-", "--", "---", "none", "null", "#n/a",
@@ -23,10 +22,9 @@ BLANK = {
 _GAUGES = (
     "d", "gauge", "dial gauge", "dial indicator", "dial", "messuhr", "comparateur", "comparatore",
 )  # fmt: skip
-_Meaning = tuple[str, float] | None
 
 
-def with_gauges(names: Sequence[str], meanings: Sequence[_Meaning]) -> list[_Meaning]:
+def with_gauges(names: Sequence[str], meanings: Sequence[tuple[str, float] | None]) -> Meanings:
     """``d`` beside ``ux uy uz``, or beside a column of letters of axes, is what a gauge reads along
     that direction; else those three are uncertainties."""
     plain = [" ".join(name.replace("_", " ").lower().split()) for name in names]
@@ -36,16 +34,16 @@ def with_gauges(names: Sequence[str], meanings: Sequence[_Meaning]) -> list[_Mea
     if letters and (pair := gauge_pair(names)):
         of = {k: (f"{state} {GAUGE}", 1.0) for state, k in pair.items()}
         return [of.get(k, known) for k, known in enumerate(meanings)]
-    if letters and len(read) == 1 and not others & {"x", *AXES}:
+    if letters and len(read) == 1 and not others & {"x", *DISPLACEMENTS}:
         return [(GAUGE, 1.0) if k in read else known for k, known in enumerate(meanings)]
-    if set(ALONG) <= set(plain) and (pair := gauge_pair(names)):
-        told = {name: (name, 1.0) for name in ALONG} | {
+    if set(DIRECTIONS) <= set(plain) and (pair := gauge_pair(names)):
+        told = {name: (name, 1.0) for name in DIRECTIONS} | {
             plain[k]: (f"{state} {GAUGE}", 1.0) for state, k in pair.items()
         }
         return [told.get(name, known) for name, known in zip(plain, meanings, strict=True)]
-    if len(read) != 1 or not set(ALONG) <= set(plain) or others & {"x", *AXES}:
+    if len(read) != 1 or not set(DIRECTIONS) <= set(plain) or others & {"x", *DISPLACEMENTS}:
         return list(meanings)
-    turned = {k: (name, 1.0) for k, name in enumerate(plain) if name in ALONG}
+    turned = {k: (name, 1.0) for k, name in enumerate(plain) if name in DIRECTIONS}
     turned[read[0]] = (GAUGE, 1.0)
     return [turned.get(k, known) for k, known in enumerate(meanings)]
 
@@ -62,12 +60,12 @@ def gauge_pair(names: Sequence[str]) -> dict[str, int]:
     return out if len(out) == len((WITHOUT, WITH)) else {}
 
 
-def axes_among(meanings: Sequence[_Meaning]) -> list[int]:
+def axes_among(meanings: Sequence[tuple[str, float] | None]) -> list[int]:
     """Columns of displacements of which some may be blank; none where positions were read."""
     words = {known[0] for known in meanings if known}
     if words & {"x", "measured x", "nominal x", "loaded x"}:
         return []
-    return [k for k, known in enumerate(meanings) if known and known[0] in AXES]
+    return [k for k, known in enumerate(meanings) if known and known[0] in DISPLACEMENTS]
 
 
 def without_blanks(row: tuple[str, ...], axes: Sequence[int]) -> tuple[str, ...]:
@@ -97,23 +95,23 @@ def displacements(
     Raises:
         InputError: A unit that nobody said, or a cell that is no number.
     """
-    if sheet.has(GAUGE, *ALONG):
+    if sheet.has(GAUGE, *DIRECTIONS):
         return _of_gauges(sheet, told)
-    columns = {name: column for name in AXES if (column := sheet.get(name))}
+    columns = {name: column for name in DISPLACEMENTS if (column := sheet.get(name))}
     if not columns:
         return None
     units = {name: unit_of(sheet, c, "length", told) for name, c in columns.items()}
     first = next(iter(units.values()))
     values = np.full((len(sheet.lines), 3), np.nan)
     written = []
-    for k, name in enumerate(AXES):
+    for k, name in enumerate(DISPLACEMENTS):
         column = columns.get(name)
         unit = units.get(name, first)
         if column is not None:
             values[:, k] = quantity(sheet, column, "length", unit, unread=True)
         cells = texts(column) if column is not None else ("",) * len(sheet.lines)
         written.append((f"{name}[{unit}]", cells))
-    missing = [name for name in AXES if name not in columns]
+    missing = [name for name in DISPLACEMENTS if name not in columns]
     said = f"Of {listed(missing)} there is no column: not read."
     return values, tuple(written), list(columns.values()), [said] if missing else []
 
@@ -122,14 +120,14 @@ def _of_gauges(
     sheet: Sheet, told: Told
 ) -> tuple[Array, tuple[tuple[str, tuple[str, ...]], ...], list[Column], list[str]]:
     """What was read along directions; along no axis of the base on its own."""
-    gauge, *along = [c for name in (GAUGE, *ALONG) if (c := sheet.get(name))]
+    gauge, *along = sheet.those(GAUGE, *DIRECTIONS)
     unit = unit_of(sheet, gauge, "length", told)
     quantity(sheet, gauge, "length", unit)
     for column in along:
         numbers(sheet, column)
     written = (
         (f"d[{unit}]", texts(gauge)),
-        *((name, texts(column)) for name, column in zip(ALONG, along, strict=True)),
+        *((name, texts(column)) for name, column in zip(DIRECTIONS, along, strict=True)),
     )
     said = [
         f"{gauge.header} is what a gauge read along the direction "

@@ -11,17 +11,23 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.columns import (
+    DISPLACEMENTS,
+    FORCES,
+    MOMENTS,
+    POSITIONS,
+    UNCERTAINTIES,
+)
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import Grid
 
-_XYZ = ("x", "y", "z")
 # What matrices of three or six columns are called, and what their columns then are.
 _KNOWN = {
-    r"p|pos(?:itions?)?|xyz|pts|points?|meas\w*|tracker|markers?|targets?": _XYZ,
-    r"d|dx|disp\w*|defl\w*|deltas?": ("dx", "dy", "dz"),
-    r"s|sigmas?|std|unc\w*": ("sx", "sy", "sz"),
-    r"f|forces?": ("fx", "fy", "fz"),
-    r"w|wrench(?:es)?": ("fx", "fy", "fz", "mx", "my", "mz"),
+    r"p|pos(?:itions?)?|xyz|pts|points?|meas\w*|tracker|markers?|targets?": POSITIONS,
+    r"d|dx|disp\w*|defl\w*|deltas?": DISPLACEMENTS,
+    r"s|sigmas?|std|unc\w*": UNCERTAINTIES,
+    r"f|forces?": FORCES,
+    r"w|wrench(?:es)?": (*FORCES, *MOMENTS),
 }
 _JOINTS = re.compile(r"q|j|th(?:eta)?s?|joints?|joint_?(?:angles?|pos\w*|values?)|angles?", re.I)
 _UNIT = re.compile(r"(.+)_(mm|um|m|deg|rad|N|kN|kg|s)")
@@ -100,7 +106,7 @@ def _of_matrices(name: str, array: Array) -> tuple[Array, tuple[str, ...]] | Non
     for stacked in (array, np.moveaxis(array, -1, 0)):
         _, high, wide = stacked.shape
         if (high, wide) in ((3, 3), (3, 4), (4, 4)):
-            of = "r" if wide == len(_XYZ) else _split(name)[0]
+            of = "r" if wide == len(POSITIONS) else _split(name)[0]
             places = [(i, j) for i in range(1, high + 1) for j in range(1, wide + 1)]
             flat = stacked.reshape(len(stacked), high * wide).astype(float)
             return flat, tuple(f"{of}{i}{j}" for i, j in places)
@@ -147,7 +153,7 @@ def _table(
         if names:
             named[path] = names
     said = set().union(*named.values()) if named else set()
-    wanted = [(n, tuple(f"q{k + 1}" for k in range(n))), (3, _XYZ if role != "loads" else ())]
+    wanted = [(n, tuple(f"q{k + 1}" for k in range(n))), (3, POSITIONS if role != "loads" else ())]
     for width, names in wanted:
         rest = [p for p, a in matrices.items() if p not in named and a.shape[1] == width]
         if names and not said & set(names) and len(rest) == 1 and (width != 3 or n != 3):

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from sk120stiff.measurements.importers.contract import Meanings
+
 _MAKERS: tuple[tuple[str, ...], ...] = (
     ("s", "l", "u", "r", "b", "t"),
     ("s", "l", "e", "u", "r", "b", "t"),  # a Motoman of seven axes
     ("base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"),  # Universal Robots
 )
 _AXIS = re.compile(r"(?:axis|achse) |(?<=[a-z\d]) (?:axis|achse)")
-Meanings = list[tuple[str, float] | None]
 
 
 def with_vendor_joints(

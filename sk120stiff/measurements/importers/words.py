@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from sk120stiff import units
+from sk120stiff.measurements.importers.contract import Meanings
 from sk120stiff.measurements.importers.gauge_units import counted_unit
 from sk120stiff.measurements.importers.load_states import state_of
 from sk120stiff.measurements.importers.masses import MASSES
@@ -186,7 +187,7 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
 
 def with_torques(
     meanings: Sequence[tuple[str, float] | None], units_of: Sequence[str | None]
-) -> list[tuple[str, float] | None]:
+) -> Meanings:
     """What tx, ty, tz mean: torques beside forces or in such a unit, else where the marker is."""
     torques = any(known and known[0] == "fx" for known in meanings) or any(
         known and known[0] == "tx" and unit and units.is_kind(unit, "moment")
@@ -227,7 +228,7 @@ def kind_of(meaning: str) -> str | None:
 
 
 def as_measured(
-    meanings: list[tuple[str, float] | None],
+    meanings: Meanings,
 ) -> tuple[tuple[str, float] | None, ...]:
     """What is called measured is the position; what stands plainly beside it was nominal."""
     words = [known[0] if known else "" for known in meanings]
