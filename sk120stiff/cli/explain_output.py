@@ -214,7 +214,7 @@ def _gain(suspect: Contender) -> str:
 def _sure(finding: Finding) -> str:
     """How probable a name is, and where others stand beside it, they and it together."""
     together = likely(finding.probability)
-    if not set(finding.alternatives) - set(finding.exact):
+    if not finding.others:
         return together
     own = likely(finding.evidence.odds.get(finding.effect.id, 0.0))
     return f"{own}; it or one of those below: {together}"

@@ -133,9 +133,9 @@ class Finding:
         return self.evidence.score_gain + shared
 
     @property
-    def others(self) -> frozenset[str]:
+    def others(self) -> tuple[str, ...]:
         """Alternatives that other readings could tell from it."""
-        return frozenset(self.alternatives) - frozenset(self.exact)
+        return tuple(name for name in self.alternatives if name not in self.exact)
 
     @property
     def places(self) -> int:

@@ -117,7 +117,7 @@ def test_no_sentence_is_said_twice_on_the_terminal(answer, tmp_path) -> None:
 def test_what_no_reading_shows_is_not_called_rigid(answer, monkeypatch) -> None:
     first = answer.final.model.parameters[0]
     one = SimpleNamespace(
-        effect=first.effect, probability=1.0, alternatives=(), exact=(),
+        effect=first.effect, probability=1.0, alternatives=(), exact=(), others=(),
         evidence=SimpleNamespace(runner_up=None, odds={}),
     )  # fmt: skip
     told = SimpleNamespace(findings=(one,), final=answer.final)

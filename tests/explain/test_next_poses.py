@@ -8,7 +8,7 @@ import pytest
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain.advise.consequences import PAIRS, NextPoses, next_poses, open_pairs
 from sk120stiff.explain.answer.next_step import told_apart
-from sk120stiff.explain.findings import Apart
+from sk120stiff.explain.findings import Apart, Finding
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import load_robot
@@ -18,13 +18,8 @@ ROBOT = load_robot("motoman_sk120")
 PLAY, BEND = "lost_motion:{}", "gear_hardening:{}"
 
 
-def finding(where: str, rival: str, exact: tuple[str, ...] = ()) -> SimpleNamespace:
-    return SimpleNamespace(
-        effect=effect(ROBOT, "gear_hardening", where),
-        alternatives=(rival, *exact),
-        exact=exact,
-        others=frozenset({rival}),
-    )
+def finding(where: str, *alternatives: str, exact: tuple[str, ...] = ()) -> Finding:
+    return Finding(effect(ROBOT, "gear_hardening", where), alternatives, exact, evidence=None)
 
 
 def open_answer(*wheres: str) -> SimpleNamespace:
@@ -63,11 +58,10 @@ def test_every_open_pair_has_its_share_of_the_readings() -> None:
 
 
 def test_the_nearest_rival_of_every_place_comes_first() -> None:
-    two = finding("joint_1_s", PLAY.format("joint_1_s"), exact=("friction_hysteresis:joint_1_s",))
-    two.alternatives = (*two.alternatives, *(f"joint_tilt:j{k}" for k in range(9)))
+    friction, tilts = "friction_hysteresis:joint_1_s", [f"joint_tilt:j{k}" for k in range(9)]
+    two = finding("joint_1_s", PLAY.format("joint_1_s"), friction, *tilts, exact=(friction,))
     one = finding("joint_2_l", PLAY.format("joint_2_l"))
-    settled = finding("joint_3_u", PLAY.format("joint_3_u"))
-    settled.alternatives = ()
+    settled = finding("joint_3_u")
     found = open_pairs(SimpleNamespace(findings=(two, settled, one)))
     assert [rival for _, rival in found[:2]] == [PLAY.format("joint_1_s"), PLAY.format("joint_2_l")]
     assert len(found) == PAIRS

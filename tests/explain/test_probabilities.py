@@ -77,6 +77,7 @@ def test_a_set_is_told_as_a_set_on_the_terminal() -> None:
     effect = SimpleNamespace(name="play", id="play:j1", told=lambda _: "The gear of j1 has play.")
     one = SimpleNamespace(
         effect=effect, probability=0.9996, alternatives=("bend:j1", "loop:j1"), exact=("loop:j1",),
+        others=("bend:j1",),
         evidence=SimpleNamespace(runner_up=None, odds={"play:j1": 0.7, "bend:j1": 0.2996}),
     )  # fmt: skip
     model = SimpleNamespace(parameters=())
@@ -86,6 +87,6 @@ def test_a_set_is_told_as_a_set_on_the_terminal() -> None:
     assert "(P = 0.70; it or one of those below: P > 0.99)" in lines[0]
     assert "or bend:j1 (not told apart here; P = 0.30)" in lines[1]
     assert "or loop:j1 (always the same)" in lines[2]
-    one.alternatives = ("loop:j1",)
+    one.alternatives, one.others = ("loop:j1",), ()
     with mock.patch("sk120stiff.cli.explain_output.unseen_reasons", return_value={}):
         assert findings(told)[0].endswith("(P > 0.99)")

@@ -10,6 +10,7 @@ import pytest
 from sk120stiff.effects import effect, load_case
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain.advise.consequences import next_poses
+from sk120stiff.explain.findings import Finding
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Cell, Rig, feasible, feasible_pool, lowest_points, random_poses
@@ -122,11 +123,8 @@ def test_the_next_poses_of_an_explanation_are_feasible_too() -> None:
     measured = random_poses(robot, 400, rng)
     measured = measured[lowest_points(robot, measured, POINT) > 0.02][:12]
     load_cases = load_case(robot, measured, [0, 0, -300.0, 0, 0, 0], point=POINT)
-    finding = SimpleNamespace(
-        effect=effect(robot, "joint_tilt", robot.actuated[1]),
-        alternatives=(f"joint_tilt:{robot.actuated[2]}",),
-        exact=(),
-    )
+    tilt = effect(robot, "joint_tilt", robot.actuated[1])
+    finding = Finding(tilt, (f"joint_tilt:{robot.actuated[2]}",), exact=(), evidence=None)
     final = SimpleNamespace(
         problem=SimpleNamespace(load_cases=load_cases),
         model=model + finding.effect,

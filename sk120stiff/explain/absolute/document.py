@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from sk120stiff.explain.answer.document import (
     parameter_entry,
     share_entries,
     share_of,
+    step_entry,
 )
 from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
 from sk120stiff.explain.findings import sentence_in
@@ -53,12 +54,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
             "p": answer.chance,
             "set_aside": int(final.wild.sum()),
             "steps": [
-                {
-                    "model": step.label,
-                    "fit_rms": step.fit_rms * 1e6,
-                    "heldout_rms": step.heldout_rms * 1e6,
-                    "heldout_mean_distance": micrometres(step.heldout_distance),
-                }
+                {**step_entry(step), "heldout_mean_distance": micrometres(step.heldout_distance)}
                 for step in answer.steps
             ],
         },
@@ -68,10 +64,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
         "budget": share_entries(answer.budget),
         "budget_joints": share_entries(answer.joints_budget),
         "springs_share": answer.springs,
-        "remainder": {
-            **remainder_entry(final),
-            "where": list(answer.where),
-        },
+        "remainder": {**remainder_entry(final), "where": list(answer.where)},
         "probabilities": [
             {"name": name, "probability": min(p, SURE), "kind": "marginal", "place": None}
             for name, p in sorted(answer.probabilities.items(), key=lambda item: -item[1])
@@ -85,9 +78,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
         "not_observable": list(answer.hidden),
         "frozen": [item.name for item in final.frozen],
         "weak_directions": [item.sentence() for item in final.frozen],
-        "smallest_detectable": [
-            {"name": item.name, "value": item.value, "unit": item.unit} for item in answer.smallest
-        ],
+        "smallest_detectable": [asdict(item) for item in answer.smallest],
         "noise": {
             "model": gap_sentence(final),
             "source": _source(final),

@@ -130,10 +130,7 @@ def next_poses(
 
 def open_pairs(answer: Explanation) -> list[tuple[str, str]]:
     """Names and what stands beside them, no more than `PAIRS`: of every place the nearest first."""
-    places = [
-        [(finding.effect.id, name) for name in finding.alternatives if name not in finding.exact]
-        for finding in answer.findings
-    ]
+    places = [[(each.effect.id, name) for name in each.others] for each in answer.findings]
     ranked = [pair for row in zip_longest(*places) for pair in row if pair is not None]
     return ranked[:PAIRS]
 

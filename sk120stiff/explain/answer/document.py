@@ -44,29 +44,14 @@ def verdict_document(
     return {
         "verdict": answer.verdict,
         "remainder": remainder_document(answer),
-        "probabilities": [
-            {
-                "name": each.name,
-                "probability": each.probability,
-                "kind": each.kind,
-                "place": each.place,
-            }
-            for each in probabilities(answer)
-        ],
+        "probabilities": [asdict(each) for each in probabilities(answer)],
         "effects": [_effect(answer, finding) for finding in answer.findings],
         "parameters": parameters_before_and_after(answer),
         "gap": {
             "unit": "um",
             "noise_floor": micrometres(answer.noise_floor),
             "p": answer.adequacy.chance,
-            "steps": [
-                {
-                    "model": step.label,
-                    "fit_rms": step.fit_rms * 1e6,
-                    "heldout_rms": step.heldout_rms * 1e6,
-                }
-                for step in answer.steps
-            ],
+            "steps": [step_entry(step) for step in answer.steps],
         },
         "next_step": next_step(answer),
         "budget": share_entries(answer.budget),
@@ -104,15 +89,18 @@ def verdict_document(
             "understated": answer.adequacy.understated,
         },
         "not_observable": list(answer.not_observable),
-        "smallest_detectable": [
-            {"name": item.name, "value": item.value, "unit": item.unit}
-            for item in answer.smallest_detectable
-        ],
+        "smallest_detectable": [asdict(item) for item in answer.smallest_detectable],
         "next_poses": next_poses,
-        "next_pairs": [
-            {"name": pair.name, "rival": pair.rival, "apart": pair.apart, "settled": pair.settled}
-            for pair in answer.next_pairs
-        ],
+        "next_pairs": [{**asdict(pair), "settled": pair.settled} for pair in answer.next_pairs],
+    }
+
+
+def step_entry(step: Step) -> dict[str, Any]:
+    """The gap with one effect more in the model [µm]."""
+    return {
+        "model": step.label,
+        "fit_rms": step.fit_rms * 1e6,
+        "heldout_rms": step.heldout_rms * 1e6,
     }
 
 

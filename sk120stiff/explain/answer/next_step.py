@@ -87,26 +87,23 @@ def _none(answer: Explanation) -> list[str]:
 
 
 def _named(answer: Explanation) -> list[str]:
-    said = [_gain(answer), *_largest(answer), *_of_the_noise(answer)]
-    if answer.remainder.significant:
-        said.append(_of_the_remainder(answer))
-    return said
+    return [_gain(answer), *_largest(answer), *_of_noise_and_rest(answer)]
 
 
 def _ambiguous(answer: Explanation) -> list[str]:
     if answer.next_poses is None:
-        said = [_gain(answer), *_of_the_noise(answer)]
-        return [*said, _of_the_remainder(answer)] if answer.remainder.significant else said
-    count = len(answer.next_poses[0])
-    said = [
-        f"Measure the {count} readings of next_poses.csv, append them to the file and run this "
-        f"again: {told_apart(answer)}.",
+        return [_gain(answer), *_of_noise_and_rest(answer)]
+    return [
+        f"Measure the {len(answer.next_poses[0])} readings of next_poses.csv, append them to the "
+        f"file and run this again: {told_apart(answer)}.",
         "Until then the model foretells such poses alike under either name.",
-        *_of_the_noise(answer),
+        *_of_noise_and_rest(answer),
     ]
-    if answer.remainder.significant:
-        said.append(_of_the_remainder(answer))
-    return said
+
+
+def _of_noise_and_rest(answer: Explanation) -> list[str]:
+    left = [_of_the_remainder(answer)] if answer.remainder.significant else []
+    return [*_of_the_noise(answer), *left]
 
 
 def told_apart(answer: Explanation) -> str:

@@ -34,7 +34,7 @@ def mostly_accounted(answer: Explanation) -> str | None:
 def told_next(answer: Explanation, finding: Finding) -> bool:
     """Do the proposed readings tell this finding from all that stand beside it?"""
     own = [pair for pair in answer.next_pairs if pair.name == finding.effect.id]
-    return bool(finding.others) and finding.others <= {p.rival for p in own if p.settled}
+    return bool(finding.others) and {*finding.others} <= {p.rival for p in own if p.settled}
 
 
 def noise_words(answer: Explanation) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from sk120stiff.model import Parameter
 from sk120stiff.show.figures.scores import score_bars
 from sk120stiff.show.report import Block, Items, Note, Picture, Section, Table
 from sk120stiff.show.stories.sizes_sections import estimates
-from sk120stiff.show.stories.verdicts import near, sentence_of
+from sk120stiff.show.stories.verdicts import sentence_of
 from sk120stiff.show.wording import (
     chance,
     counted,
@@ -64,7 +64,7 @@ def _finding(answer: Explanation, finding: Finding) -> list[Block]:
                 "One of several words for it",
             )
         )
-    rivals = near(finding)
+    rivals = finding.others
     if rivals:
         blocks.append(
             Note(
@@ -225,9 +225,9 @@ def _outside(answer: Explanation) -> list[Block]:
     return blocks
 
 
-def _or(names: tuple[str, ...] | list[str]) -> str:
+def _or(names: tuple[str, ...]) -> str:
     return listed([f"`{name}`" for name in names], "or")
 
 
-def _sentences(answer: Explanation, names: tuple[str, ...] | list[str]) -> str:
+def _sentences(answer: Explanation, names: tuple[str, ...]) -> str:
     return " ".join(sentence_of(answer, name) for name in names)

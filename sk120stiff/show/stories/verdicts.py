@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sk120stiff.explain import DOUBTFUL, Explanation, Finding
+from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
 from sk120stiff.explain.findings import likely, sentence_in
@@ -78,7 +78,7 @@ def _ambiguous(answer: Explanation) -> str:
     open_ = [f for f in answer.findings if not f.settled]
     said = " ".join(settled)
     for finding in open_:
-        rivals = [sentence_of(answer, name) for name in near(finding)]
+        rivals = [sentence_of(answer, name) for name in finding.others]
         said += f" {sentence_in(answer.final.model, finding.effect)}"
         if not rivals:
             said += f" That is not sure ({likely(finding.probability, 'probability')})."
@@ -86,7 +86,7 @@ def _ambiguous(answer: Explanation) -> str:
         said += f" Or: {' Or: '.join(rivals[:FEW])}"
         if len(rivals) > FEW:
             said += f" Or one of {counted(len(rivals) - FEW, 'other')}."
-    several = any(near(finding) for finding in open_)
+    several = any(finding.others for finding in open_)
     tail = " These readings cannot tell which." if several else " More readings would tell."
     if answer.next_poses is not None:
         told = all(pair.settled for pair in answer.next_pairs)
@@ -149,11 +149,6 @@ def noise_makes(answer: Explanation) -> str:
     if answer.noise_floor is None:
         return "the noise is unknown"
     return f"the noise alone makes {um(answer.noise_floor)} µm"
-
-
-def near(finding: Finding) -> list[str]:
-    """Alternatives that other poses could tell apart."""
-    return [name for name in finding.alternatives if name not in finding.exact]
 
 
 def sentence_of(answer: Explanation, name: str) -> str:

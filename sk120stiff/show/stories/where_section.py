@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sk120stiff.explain import Explanation, Localisation
+from sk120stiff.explain.answer.document import micrometres
 from sk120stiff.show.report import Block, Items, Picture, Section, Table
 from sk120stiff.show.stories.pictures import suspect_panels
 from sk120stiff.show.wording import chance, percent
@@ -91,7 +92,7 @@ def _between(low: float, high: float) -> str:
 
 def _levels(found: Localisation) -> Table:
     rows = [
-        (_between(level.low, level.high), level.count, 1e6 * level.rms, _um(level.noise))
+        (_between(level.low, level.high), level.count, 1e6 * level.rms, micrometres(level.noise))
         for level in found.levels
     ]
     return Table(
@@ -109,7 +110,7 @@ def _poses(found: Localisation) -> Table:
         (
             pose.label,
             1e6 * pose.rms,
-            _um(pose.noise),
+            micrometres(pose.noise),
             percent(pose.share),
             chance(pose.probability),
         )
@@ -122,7 +123,3 @@ def _poses(found: Localisation) -> Table:
         units=["", "µm", "µm", "", ""],
         digits=3,
     )
-
-
-def _um(metres: float | None) -> float | None:
-    return None if metres is None else 1e6 * metres
