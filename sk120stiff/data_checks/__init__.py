@@ -1,6 +1,6 @@
 """Slips of the pen in measurements: looked for before physics is blamed."""
 
-from sk120stiff.data_checks.copies import repeated_rows, without_copies
+from sk120stiff.data_checks.copies import without_copies
 from sk120stiff.data_checks.look import look, refuse_slips, refuse_unbelievable
 from sk120stiff.data_checks.search import find_slip
 from sk120stiff.data_checks.single_rows import place_of, slips_of_rows
@@ -13,7 +13,6 @@ __all__ = [
     "place_of",
     "refuse_slips",
     "refuse_unbelievable",
-    "repeated_rows",
     "slips_of_rows",
     "without_copies",
     "without_stuck",

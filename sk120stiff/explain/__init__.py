@@ -2,8 +2,8 @@
 
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.answer.document import verdict_document
-from sk120stiff.explain.answer.explanation import Explanation, Verdict
-from sk120stiff.explain.findings import Detectable, Evidence, Finding, Step
+from sk120stiff.explain.answer.explanation import Explanation
+from sk120stiff.explain.findings import Detectable, Finding
 from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
@@ -14,14 +14,11 @@ from sk120stiff.identify import DOUBTFUL
 __all__ = [
     "DOUBTFUL",
     "Detectable",
-    "Evidence",
     "Explained",
     "Explanation",
     "Finding",
     "Localisation",
     "Options",
-    "Step",
-    "Verdict",
     "explain",
     "localise",
     "verdict_document",

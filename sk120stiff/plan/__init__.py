@@ -2,11 +2,11 @@
 
 from sk120stiff.plan.cell import Cell, read_cell
 from sk120stiff.plan.design import d_optimal, random_choice, well_spread
-from sk120stiff.plan.discriminate import Rivalry, readings_for_all, rivalry, signature_columns
+from sk120stiff.plan.discriminate import readings_for_all, rivalry, signature_columns
 from sk120stiff.plan.feasible import Verdict, feasible
 from sk120stiff.plan.of_positions import PlanOfPositions, plan_positions
 from sk120stiff.plan.places import Places
-from sk120stiff.plan.planned import Plan, plan, promised, to_be_taken
+from sk120stiff.plan.planned import Plan, plan, promised
 from sk120stiff.plan.pool import Pool, feasible_pool, random_pool, random_poses
 from sk120stiff.plan.rig import Rig
 from sk120stiff.plan.route import NoWay, Route, jumps, route, straight_on
@@ -28,7 +28,6 @@ __all__ = [
     "PlanOfPositions",
     "Pool",
     "Rig",
-    "Rivalry",
     "Route",
     "Schedule",
     "Verdict",
@@ -56,6 +55,5 @@ __all__ = [
     "signature_columns",
     "simulate",
     "straight_on",
-    "to_be_taken",
     "well_spread",
 ]

@@ -1,17 +1,13 @@
 """Paths in, robot programs out: G-code and APT become points, corrected points become programs."""
 
-from sk120stiff.programs.apt import read_apt
 from sk120stiff.programs.catalogue import LANGUAGES, READERS, language_of
 from sk120stiff.programs.gcode import read_gcode
 from sk120stiff.programs.language import Language
-from sk120stiff.programs.program import Program
 
 __all__ = [
     "LANGUAGES",
     "READERS",
     "Language",
-    "Program",
     "language_of",
-    "read_apt",
     "read_gcode",
 ]

@@ -8,8 +8,8 @@ from sk120stiff.stiffness.cartesian import (
     spring_matrix,
     symmetric_part,
 )
-from sk120stiff.stiffness.elastic import Compliant, ConstantCompliance
-from sk120stiff.stiffness.energy import PaperWork, loading_balance, paper_work, quadratic
+from sk120stiff.stiffness.elastic import ConstantCompliance
+from sk120stiff.stiffness.energy import PaperWork, loading_balance, paper_work
 from sk120stiff.stiffness.equilibrium import (
     ElasticLaw,
     Equilibrium,
@@ -34,7 +34,6 @@ __all__ = [
     "COMPILED",
     "POSITIONS",
     "ROTATIONS",
-    "Compliant",
     "ConstantCompliance",
     "Definiteness",
     "ElasticLaw",
@@ -53,7 +52,6 @@ __all__ = [
     "loading_balance",
     "paper_work",
     "principal_stiffness",
-    "quadratic",
     "spring_matrix",
     "symmetric_part",
     "under_load",

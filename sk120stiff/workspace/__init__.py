@@ -1,13 +1,7 @@
 """Stiffness over the workspace: maps, the best posture, deflections compensated."""
 
 from sk120stiff.workspace.arm import ElasticArm, elastic_arm
-from sk120stiff.workspace.branch import (
-    Branch,
-    branch_of,
-    joint_heights,
-    lowest_floor,
-    stays_above,
-)
+from sk120stiff.workspace.branch import Branch, branch_of, lowest_floor, stays_above
 from sk120stiff.workspace.compensate import Compensation, Standing, compensate, standing
 from sk120stiff.workspace.field import STATUS, JointGrid, MapJob, PositionGrid
 from sk120stiff.workspace.finished import (
@@ -32,7 +26,7 @@ from sk120stiff.workspace.path import (
 )
 from sk120stiff.workspace.places import places_of
 from sk120stiff.workspace.posture import BestPosture, best_posture
-from sk120stiff.workspace.returned import Returned, read_returned
+from sk120stiff.workspace.returned import Returned
 from sk120stiff.workspace.standing_uncertainty import (
     StandingUncertainty,
     standing_budgets,
@@ -67,7 +61,6 @@ __all__ = [
     "compensate",
     "damaged_map",
     "elastic_arm",
-    "joint_heights",
     "joints_along",
     "lowest_floor",
     "map_postures",
@@ -76,7 +69,6 @@ __all__ = [
     "places_of",
     "posture_landscape",
     "read_path",
-    "read_returned",
     "solve_inverse",
     "standing",
     "standing_budgets",

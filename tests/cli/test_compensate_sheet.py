@@ -9,7 +9,8 @@ import pytest
 
 from sk120stiff.model import joint_spring_model, read_model, write_model
 from sk120stiff.robot import load_robot
-from sk120stiff.workspace import read_path, read_returned, standing, standing_budgets
+from sk120stiff.workspace import read_path, standing, standing_budgets
+from sk120stiff.workspace.returned import read_returned
 from tests.cli.conftest import Run
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
-from sk120stiff.data_checks import look, repeated_rows, without_copies
+from sk120stiff.data_checks import look, without_copies
+from sk120stiff.data_checks.copies import repeated_rows
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.explain import explain
 from sk120stiff.measurements import Measurements

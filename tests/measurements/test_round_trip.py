@@ -16,10 +16,10 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements import (
     Measurements,
     NoiseStatement,
-    join_measurements,
     read_measurements,
     write_measurements,
 )
+from sk120stiff.measurements.joining import join_measurements
 
 LABEL = st.text(alphabet=string.ascii_letters + string.digits + ' _-.,;"äλ', min_size=1, max_size=8)
 FIELDS = [f.name for f in dataclasses.fields(Measurements)]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sk120stiff.errors import InputError
-from sk120stiff.programs import read_apt, read_gcode
+from sk120stiff.programs import read_gcode
+from sk120stiff.programs.apt import read_apt
 
 # Written by hand after the public description of NX's CLSF.
 CLS = """TOOL PATH/MILL,TOOL,EM20

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.programs import LANGUAGES, Language, Program
+from sk120stiff.programs import LANGUAGES, Language
 from sk120stiff.programs.orientation import (
     fixed_xyz,
     from_fixed_xyz,
@@ -19,6 +19,7 @@ from sk120stiff.programs.orientation import (
     kuka_abc,
     quaternion,
 )
+from sk120stiff.programs.program import Program
 
 ALL = list(LANGUAGES.values())
 NAMES = [language.name for language in ALL]

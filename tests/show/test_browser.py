@@ -8,7 +8,8 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from sk120stiff.effects import load_case
-from sk120stiff.plan import Pool, to_be_taken
+from sk120stiff.plan import Pool
+from sk120stiff.plan.planned import to_be_taken
 from sk120stiff.show import static_scene
 from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.payload import frame_payload

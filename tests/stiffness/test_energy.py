@@ -13,8 +13,8 @@ from sk120stiff.stiffness import (
     linear_springs,
     loading_balance,
     paper_work,
-    quadratic,
 )
+from sk120stiff.stiffness.energy import quadratic
 from tests.stiffness.arms import PAPER_SPRINGS, POINT, mixed_arm, sk120, sk120_poses
 
 HEAVY = np.array([5000.0, -6000.0, 6000.0, 0, 0, 0])

@@ -24,14 +24,8 @@ from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.model import joint_spring_model, model_compliance
 from sk120stiff.robot import Mechanism, Robot, VirtualJoint, load_robot
 from sk120stiff.robot.loops.coupling import LoopCoupling
-from sk120stiff.stiffness import (
-    CLASSES,
-    COMPILED,
-    Compliant,
-    ConstantCompliance,
-    UnderLoad,
-    under_load,
-)
+from sk120stiff.stiffness import CLASSES, COMPILED, ConstantCompliance, UnderLoad, under_load
+from sk120stiff.stiffness.elastic import Compliant
 from sk120stiff.stiffness.kernel import run
 from sk120stiff.stiffness.kernel.compiled import part, told_of_compiling
 from sk120stiff.stiffness.kernel.run import announced

@@ -12,7 +12,8 @@ import pytest
 from sk120stiff.errors import Refusal, ToolkitWarning
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot, load_robot
-from sk120stiff.workspace import branch_of, elastic_arm, joint_heights, joints_along, read_path
+from sk120stiff.workspace import branch_of, elastic_arm, joints_along, read_path
+from sk120stiff.workspace.branch import joint_heights
 from sk120stiff.workspace.path import without_turns
 from tests.corpus.robots import example
 
