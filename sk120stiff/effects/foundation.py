@@ -14,7 +14,7 @@ from sk120stiff.effects.base import AxisByAxis, Effect
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
-from sk120stiff.effects.parameter import ParameterSpec, compliance
+from sk120stiff.effects.parameter import ParameterSpec, compliances
 from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.rotations import homogeneous
@@ -95,16 +95,10 @@ class BaseRocking(StraightPart):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Rocking stiffness about x and about y, and what couples the two."""
-        own = (
-            compliance(
-                f"stiffness_{label}{self._end}",
-                softest=3e5,
-                typical=1e7,
-                scale=self.scale,
-                meaning=f"against rocking about {label} of the base frame",
-            )
-            for label in "xy"
-        )
+        own = compliances(
+            "xy", "stiffness_{}" + self._end, softest=3e5, typical=1e7, scale=self.scale,
+            meaning="against rocking about {} of the base frame",
+        )  # fmt: skip
         return (*own, *([cross_term(self.scale, "x", "y", self._end)] if self.askew else []))
 
     @property
@@ -155,17 +149,10 @@ class BaseSliding(AxisByAxis):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Stiffness against shifting along x, y and z."""
-        return tuple(
-            compliance(
-                f"stiffness_{label}",
-                softest=2e6,
-                typical=7e7,
-                scale=self.scale,
-                unit="N/m",
-                meaning=f"against shifting along {label} of the base frame",
-            )
-            for label in "xyz"
-        )
+        return compliances(
+            "xyz", "stiffness_{}", softest=2e6, typical=7e7, scale=self.scale, unit="N/m",
+            meaning="against shifting along {} of the base frame",
+        )  # fmt: skip
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:

@@ -31,20 +31,13 @@ class JointSprings(AxisByAxis):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """The spring's stiffness."""
-        if self.slides:
-            return (
-                compliance(
-                    "stiffness",
-                    softest=1e4,
-                    typical=1e7,
-                    scale=self.scale,
-                    unit="N/m",
-                    meaning=MEANING,
-                ),
-            )
+        unit, softest, typical = ("N/m", 1e4, 1e7) if self.slides else ("N*m/rad", 1e3, 1e6)
         return (
-            compliance("stiffness", softest=1e3, typical=1e6, scale=self.scale, meaning=MEANING),
-        )
+            compliance(
+                "stiffness", softest=softest, typical=typical, scale=self.scale, unit=unit,
+                meaning=MEANING,
+            ),
+        )  # fmt: skip
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:

@@ -122,3 +122,17 @@ def compliance(
         meaning=meaning,
         quantity=quantity,
     )
+
+
+def compliances(
+    axes: str, name: str, *, softest: float, typical: float, scale: float, meaning: str,
+    unit: str = "N*m/rad",
+) -> tuple[ParameterSpec, ...]:  # fmt: skip
+    """Like compliances, one for each letter of `axes`: ``{}`` in name and meaning stands for it."""
+    return tuple(
+        compliance(
+            name.format(axis), softest=softest, typical=typical, scale=scale, unit=unit,
+            meaning=meaning.format(axis),
+        )
+        for axis in axes
+    )  # fmt: skip

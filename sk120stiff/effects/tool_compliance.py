@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.effects.nonlinear import Nonlinear, StraightPart
-from sk120stiff.effects.parameter import ParameterSpec, compliance
+from sk120stiff.effects.parameter import ParameterSpec, compliances
 from sk120stiff.robot import Robot, VirtualJoint
 
 
@@ -29,27 +29,14 @@ class ToolCompliance(StraightPart):
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Stiffness against turning about x, y, z and against shifting along them."""
-        turning = (
-            compliance(
-                f"stiffness_turn_{label}",
-                softest=3e3,
-                typical=2e5,
-                scale=self.scale,
-                meaning=f"against turning about {label} of the tool frame",
-            )
-            for label in "xyz"
-        )
-        shifting = (
-            compliance(
-                f"stiffness_shift_{label}",
-                softest=2e6,
-                typical=5e7,
-                scale=self.scale,
-                unit="N/m",
-                meaning=f"against shifting along {label} of the tool frame",
-            )
-            for label in "xyz"
-        )
+        turning = compliances(
+            "xyz", "stiffness_turn_{}", softest=3e3, typical=2e5, scale=self.scale,
+            meaning="against turning about {} of the tool frame",
+        )  # fmt: skip
+        shifting = compliances(
+            "xyz", "stiffness_shift_{}", softest=2e6, typical=5e7, scale=self.scale, unit="N/m",
+            meaning="against shifting along {} of the tool frame",
+        )  # fmt: skip
         return (*turning, *shifting)
 
     @property
