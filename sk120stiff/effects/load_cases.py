@@ -15,7 +15,7 @@ from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.effects.latest import Latest
 from sk120stiff.effects.reference import Reference, references_of
 from sk120stiff.robot import Robot, Screws, VirtualJoint
-from sk120stiff.stiffness.wrench import wrenches
+from sk120stiff.stiffness.wrench import rotate, wrenches
 
 if TYPE_CHECKING:
     from sk120stiff.measurements import Absolute, Measurements
@@ -295,13 +295,7 @@ def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
     rotation = robot.screws(a).rotation
     wrench = measurements.wrench
     if measurements.force_frame == "tool":
-        wrench = np.concatenate(
-            [
-                np.einsum("nij,nj->ni", rotation, wrench[:, :3]),
-                np.einsum("nij,nj->ni", rotation, wrench[:, 3:]),
-            ],
-            axis=1,
-        )
+        wrench = rotate(rotation, wrench)
     identity = np.broadcast_to(np.eye(3), rotation.shape)
     labels = measurements.poses
     index = {label: k for k, label in enumerate(labels)}

@@ -34,10 +34,11 @@ from sk120stiff.effects import (
     Weighing,
 )
 from sk120stiff.effects.base import Misreading, Moving, Switching
-from sk120stiff.model.misread import misread, rotate, to_sensor
+from sk120stiff.model.misread import misread, to_sensor
 from sk120stiff.model.standing import Solution, Standing
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
+from sk120stiff.stiffness.wrench import rotate
 
 KEPT = 32  # sets of effects that stay put together
 

@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
 from sk120stiff.effects.base import Misreading
+from sk120stiff.stiffness.wrench import rotate
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,10 +46,3 @@ def misread(
 def to_sensor(load_cases: LoadCases) -> Array:
     """(N, 6) the reported wrench in sensor axes."""
     return rotate(np.swapaxes(load_cases.rotation, -1, -2), load_cases.wrench)
-
-
-def rotate(rotation: Array, wrench: Array) -> Array:
-    """(N, 6) wrenches with force and moment turned by (N, 3, 3)."""
-    force = np.einsum("nij,nj->ni", rotation, wrench[:, :3])
-    moment = np.einsum("nij,nj->ni", rotation, wrench[:, 3:])
-    return np.concatenate([force, moment], axis=1)

@@ -1,4 +1,4 @@
-"""Loads as callers give them: force and moment, or a force alone, for all poses or for each."""
+"""Loads as callers give them, force and moment or a force alone, and as other axes have them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,13 @@ from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
+
+
+def rotate(rotation: Array, wrench: Array) -> Array:
+    """(N, 6) wrenches with force and moment turned by (N, 3, 3)."""
+    force = np.einsum("nij,nj->ni", rotation, wrench[:, :3])
+    moment = np.einsum("nij,nj->ni", rotation, wrench[:, 3:])
+    return np.concatenate([force, moment], axis=1)
 
 
 def wrenches(wrench: ArrayLike, count: int) -> Array:

@@ -27,6 +27,7 @@ from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
+from sk120stiff.stiffness.wrench import rotate
 from sk120stiff.units import from_si, is_kind, to_si
 from sk120stiff.workspace.arm import ElasticArm
 from sk120stiff.workspace.inverse import Task, near, solve_inverse, starting_poses
@@ -73,8 +74,7 @@ class LoadedPath:
     def turned_to_base(self, robot: Robot, a: Array, frame: str | None) -> LoadedPath:
         """The path in base axes, of loads that are stated in those of the tool at joints (N, n)."""
         R = robot.placement(a, frame)[:, :3, :3]
-        turned = [np.einsum("nij,nj->ni", R, self.wrench[:, k : k + 3]) for k in (0, 3)]
-        return replace(self, wrench=np.concatenate(turned, axis=1))
+        return replace(self, wrench=rotate(R, self.wrench))
 
 
 def read_path(
