@@ -17,6 +17,7 @@ from sk120stiff.arrays import Array, Index, on_one_thread
 from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify import why_unseen
+from sk120stiff.identify.absolute.pose_problem import absolute_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.plan.cell import Cell
@@ -284,9 +285,7 @@ def _standing(
         Refusal: They hold it at fewer than are `asked` for.
     """
     within = replace(cell or Cell(), rig=HANGING)
-    said = like.absolute
-    if said is None:
-        raise InputError("these readings are no positions")
+    said = absolute_of(like)
     at = said.point[0]
     if known is not None:
         cases = load_cases_of(robot, known)

@@ -23,7 +23,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, rigid
 from sk120stiff.identify.absolute.gauge import least_set
 from sk120stiff.identify.absolute.noise_sizes import START
 from sk120stiff.identify.absolute.own_weight import heaviest_payload, own_weight
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.absolute.pose_problem import PoseProblem, absolute_of
 from sk120stiff.identify.absolute.start import loaded, started
 from sk120stiff.measurements import Channels, Measurements, NoiseModel
 from sk120stiff.measurements.absolute import Absolute
@@ -243,9 +243,7 @@ def _here(readings: Measurements) -> Placing:
 
 def _situations(like: Measurements) -> Index:
     """(S,) rows under the same payload and load: those of other markers at the same pose."""
-    said = like.absolute
-    if said is None:
-        raise InputError("these are no positions")
+    said = absolute_of(like)
     return np.unique(np.column_stack([said.payload, like.wrench]), axis=0, return_inverse=True)[
         1
     ].reshape(-1)
@@ -287,9 +285,7 @@ def readings_like(
         rows = known.select(_last_of_each(known))
         if len(masses):
             rows = rows.select(np.repeat(np.arange(rows.n_readings), len(masses)))
-    said = rows.absolute
-    if said is None:
-        raise InputError("these readings are no positions")
+    said = absolute_of(rows)
     said = replace(said, channels=anywhere(said.channels))
     if len(masses):
         said = replace(said, payload=np.tile(masses, rows.n_readings // len(masses)))
@@ -304,9 +300,7 @@ def readings_like(
 
 def _last_of_each(known: Measurements) -> Index:
     """The last reading of every marker under every payload and load."""
-    said = known.absolute
-    if said is None:
-        raise InputError("these readings are no positions")
+    said = absolute_of(known)
     keys = zip(said.markers, said.payload.tolist(), map(tuple, known.wrench), strict=True)
     return np.array(sorted({key: row for row, key in enumerate(keys)}.values()), dtype=np.intp)
 
@@ -337,9 +331,7 @@ def _blank_rows(robot: Robot, count: int) -> Measurements:
 
 def to_be_read(picked: Measurements, source: str) -> Measurements:
     """Readings to take: joint values as people type them, nothing of when or what was read."""
-    said, count = picked.absolute, picked.n_readings
-    if said is None:
-        raise ValueError("these are no positions")
+    said, count = absolute_of(picked), picked.n_readings
     return replace(
         picked,
         joints=np.where(

@@ -13,7 +13,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import load_cases_of
-from sk120stiff.errors import InputError
+from sk120stiff.identify.absolute.pose_problem import absolute_of
 from sk120stiff.measurements import Channels, Measurements
 from sk120stiff.measurements.channels import ANGLES, BY_LOAD, KINDS, Kind, inclined
 from sk120stiff.model import Model
@@ -46,9 +46,7 @@ def simulated_channels(
         InputError: The model does not know where the instrument stands.
         Refusal: The springs cannot hold the arm's weight or a load.
     """
-    said = plan.absolute
-    if said is None:
-        raise InputError("these are no channels")
+    said = absolute_of(plan)
     model = model.under(plan.gravity)
     notes: tuple[str, ...] = ()
     if plan.is_plan and not knows_place(model, plan):  # nobody has put it anywhere yet

@@ -24,7 +24,7 @@ from sk120stiff.identify.absolute.noise_sizes import (
     of_poses,
     wild_beside,
 )
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.absolute.pose_problem import PoseProblem, absolute_of
 from sk120stiff.identify.absolute.refusals import (
     nowhere,
     refuse_a_wrong_end,
@@ -146,9 +146,7 @@ def calibrate(
         InputError: No such robot gave these positions, or there are too few of them.
         Refusal: The fit did not converge.
     """
-    said = readings.absolute
-    if said is None:
-        raise InputError("there are no positions", where=str(readings.path or "measurements"))
+    said = absolute_of(readings)
     model = model.under(readings.gravity)
     sizes = doubtful_sizes(model.robot, readings)
     placed = place(model.robot, readings)

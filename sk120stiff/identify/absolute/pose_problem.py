@@ -17,13 +17,24 @@ from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.pose_errors import PoseWhitening
 from sk120stiff.identify.solve.problem import Problem
-from sk120stiff.measurements import Channels
+from sk120stiff.measurements import Channels, Measurements
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import ANGLES, OF_AXES, inclined
 from sk120stiff.model import Parameter
 from sk120stiff.model.pose_reading import move_by_load, read_poses
 
 ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
+
+
+def absolute_of(readings: Measurements) -> Absolute:
+    """What readings say of where markers stand.
+
+    Raises:
+        InputError: They are displacements of one point.
+    """
+    if readings.absolute is None:
+        raise InputError("there are no positions", where=str(readings.path or "measurements"))
+    return readings.absolute
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +51,12 @@ class PoseProblem(Problem):
     common: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.measurements.absolute is None:
-            raise InputError("there are no positions", where=str(self.measurements.path or ""))
+        absolute_of(self.measurements)
 
     @property
     def said(self) -> Absolute:
         """What the readings say beside their numbers."""
-        if self.measurements.absolute is None:
-            raise InputError("there are no positions")
-        return self.measurements.absolute
+        return absolute_of(self.measurements)
 
     @property
     def channels(self) -> Channels:
