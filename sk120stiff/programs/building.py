@@ -54,7 +54,7 @@ def build(
     Raises:
         InputError: A setting that the language does not have, or axes that are none.
     """
-    settings = language.with_defaults(_with_pulses(language, robot, given))
+    settings = language.with_defaults(with_pulses(language, robot, given))
     axes, slides, values = controller_axes(robot, a)
     in_part = language.in_part_frame(settings)
     place = places(robot, a, frame, part if in_part else None)
@@ -94,7 +94,8 @@ def places_in(robot: Robot) -> str:
     return f"the robot's frame {robot.base_frame}"
 
 
-def _with_pulses(language: Language, robot: Robot, given: Mapping[str, str]) -> dict[str, str]:
+def with_pulses(language: Language, robot: Robot, given: Mapping[str, str]) -> dict[str, str]:
+    """The settings that are given, with the pulses that the robot knows of where they count."""
     known = robot.controller.pulses_per_degree
     if "pulses" in language.settings and known:
         return {"pulses": ",".join(f"{x:.12g}" for x in known), **given}

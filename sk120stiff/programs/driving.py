@@ -11,7 +11,7 @@ import numpy as np
 
 from sk120stiff.errors import InputError
 from sk120stiff.plan import Route
-from sk120stiff.programs.building import controller_axes, convention, places_in
+from sk120stiff.programs.building import controller_axes, convention, places_in, with_pulses
 from sk120stiff.programs.catalogue import LANGUAGES
 from sk120stiff.programs.controller import frame_words, places
 from sk120stiff.programs.language import Language
@@ -49,10 +49,7 @@ def route_program(
         poses: What the poses are called, in the order in which they are driven.
     """
     labels = dict(zip(found.order, poses, strict=True))
-    given = {}
-    if "pulses" in language.settings and robot.controller.pulses_per_degree:
-        given = {"pulses": ",".join(f"{x:.12g}" for x in robot.controller.pulses_per_degree)}
-    settings = language.with_defaults(given)
+    settings = language.with_defaults(with_pulses(language, robot, {}))
     axes, slides, values = controller_axes(robot, found.a)
     place = places(robot, found.a, None)
     stops = ", ".join(

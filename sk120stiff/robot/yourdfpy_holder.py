@@ -75,7 +75,9 @@ def _link(link: LinkSpec, document: UrdfDocument, unread: set[str]) -> yourdfpy.
             name=spec.name or None,
             origin=spec.origin,
             geometry=_geometry(spec, document),
-            material=_material(spec),
+            material=None
+            if spec.rgba is None
+            else yourdfpy.Material(name="", color=yourdfpy.Color(rgba=np.array(spec.rgba))),
         )
         for spec in document.visuals
         if spec.link == link.name and spec.place not in unread and spec.geometry.kind != "capsule"
@@ -99,14 +101,6 @@ def _geometry(spec: VisualSpec, document: UrdfDocument) -> yourdfpy.Geometry:
     return yourdfpy.Geometry(
         mesh=yourdfpy.Mesh(filename=str(path or address), scale=np.array(size))
     )
-
-
-def _material(spec: VisualSpec) -> yourdfpy.Material | None:
-    import yourdfpy
-
-    if spec.rgba is None:
-        return None
-    return yourdfpy.Material(name="", color=yourdfpy.Color(rgba=np.array(spec.rgba)))
 
 
 def _joint(joint: JointSpec) -> yourdfpy.Joint:
