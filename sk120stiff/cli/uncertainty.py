@@ -36,13 +36,13 @@ def uncertainty_keys(model: Model) -> dict[str, object]:
     }
 
 
-def plus_minus(value: float, std: float, digits: int = 5) -> str:
+def plus_minus(value: float, std: float) -> str:
     """``649.36 ± 3.2``, the error with two digits; ``± ?`` where it is unknown."""
     if not np.isfinite(value):
-        return f"{value:.{digits}g}"
+        return f"{value:.5g}"
     if not np.isfinite(std):
-        return f"{value:.{digits}g} ± ?"
-    return f"{value:.{digits}g} ± {two_digits(std)}"
+        return f"{value:.5g} ± ?"
+    return f"{value:.5g} ± {two_digits(std)}"
 
 
 def sentences(

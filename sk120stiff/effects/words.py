@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from sk120stiff.effects.base import Effect
-from sk120stiff.effects.catalogue import CATALOGUE, Catalogue
+from sk120stiff.effects.catalogue import CATALOGUE
 
 
 def words_of(effect: Effect) -> dict[str, Any]:
@@ -31,15 +31,13 @@ def words_of(effect: Effect) -> dict[str, Any]:
     }
 
 
-def catalogue_words(
-    name: str | None = None, catalogue: Catalogue = CATALOGUE
-) -> list[dict[str, Any]]:
+def catalogue_words(name: str | None = None) -> list[dict[str, Any]]:
     """Every effect of the catalogue in words, or the one of that name.
 
     Raises:
         InputError: There is no such effect.
     """
-    kinds = catalogue if name is None else [catalogue[name]]
+    kinds = CATALOGUE if name is None else [CATALOGUE[name]]
     found = [words_of(kind.sample()) for kind in kinds]
     return [{**each, "sentence": _at_no_place(each["sentence"])} for each in found]
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.effects import CATALOGUE, Catalogue, Effect
+from sk120stiff.effects import CATALOGUE, Effect
 from sk120stiff.errors import InputError
 
 USUAL = 0.1  # of every effect without an entry
@@ -54,7 +54,7 @@ def price(effect: Effect, given: Mapping[str, float]) -> float:
     return 2.0 * (_logit(USUAL) - _logit(given.get(effect.id, given.get(effect.name, table))))
 
 
-def priors_from(texts: Iterable[str], catalogue: Catalogue = CATALOGUE) -> dict[str, float]:
+def priors_from(texts: Iterable[str]) -> dict[str, float]:
     """Probabilities from texts such as ``base_rocking=0.5`` or ``joint_tilt:joint_2=0.3``.
 
     Raises:
@@ -64,8 +64,8 @@ def priors_from(texts: Iterable[str], catalogue: Catalogue = CATALOGUE) -> dict[
     for text in texts:
         name, _, number = text.partition("=")
         kind = name.partition(":")[0]
-        if kind not in catalogue:
-            raise catalogue.unknown(kind)
+        if kind not in CATALOGUE:
+            raise CATALOGUE.unknown(kind)
         try:
             value = float(number)
         except ValueError:

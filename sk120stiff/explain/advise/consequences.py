@@ -72,9 +72,7 @@ class NextPoses(NamedTuple):
     pairs: tuple[Apart, ...]
 
 
-def next_poses(
-    answer: Explanation, *, seed: int, count: int = READINGS_TO_MEASURE, cell: Cell | None = None
-) -> NextPoses | None:
+def next_poses(answer: Explanation, *, seed: int, cell: Cell | None = None) -> NextPoses | None:
     """Poses and loads that tell all unsettled pairs of names apart; None where nothing is open.
 
     The pairs share the readings. They keep to the cell; where it names no floor or rig they go no
@@ -122,7 +120,8 @@ def next_poses(
             remedy="Give the rig smaller steps, or plan by 'sk120stiff plan --between'.",
         )
     sigma = DISPLACEMENT * answer.noise.sigma * answer.final.noise_factor
-    chosen, apart = readings_for_all([block / sigma for block in held.values()], count=count)
+    columns = [block / sigma for block in held.values()]
+    chosen, apart = readings_for_all(columns, count=READINGS_TO_MEASURE)
     told = tuple(Apart(*pair, float(size)) for pair, size in zip(held, apart, strict=True))
     rows = list(chosen)
     return NextPoses(cases.a[rows], cases.wrench[rows], pool.remarks, told)

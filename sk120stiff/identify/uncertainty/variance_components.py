@@ -52,14 +52,9 @@ class Components:
         return float(0.5 * stats.chi2.sf(max(self.gain, 0.0), 2)) if self.gain > 0.0 else 1.0
 
 
-def variance_components(fit: Fit, slack: float = 0.0) -> Components:
-    """The likeliest model-form error beside the noise of a fit's readings.
-
-    Args:
-        fit: The fitted model.
-        slack: Relative standard uncertainty of its σ, where that is known.
-    """
-    return likeliest_components(Deviance.of(LaidOut.of(fit), slack))
+def variance_components(fit: Fit) -> Components:
+    """The likeliest model-form error beside the noise of a fit's readings."""
+    return likeliest_components(Deviance.of(LaidOut.of(fit)))
 
 
 def likeliest_components(sums: Deviance) -> Components:
