@@ -348,12 +348,9 @@ class Model:
             >>> len(sensor.parameters), len(sensor.physical().parameters)
             (6, 3)
         """
-        return replace(
-            self,
-            parameters=tuple(
-                p for p in self.parameters if not isinstance(p.effect, LoadError | ReadingError)
-            ),
-        )
+        instrument = LoadError | ReadingError
+        kept = tuple(p for p in self.parameters if not isinstance(p.effect, instrument))
+        return replace(self, parameters=kept)
 
     def joint_stiffness(self) -> Array:
         """(n,) springs of the actuated joints [N·m/rad or N/m]; infinite where rigid.
