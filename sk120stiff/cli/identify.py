@@ -186,7 +186,7 @@ def with_effect(model: Model, text: str, readings: Measurements) -> Model:
     if not found.applies_to(load_cases_of(model.robot, readings)):
         raise InputError(
             f"these readings lack what the effect {found.id!r} needs",
-            where=str(readings.path or "measurements"),
+            where=readings.place,
             remedy="See what its law takes: an order, branches, several readings of a pose, a "
             "weight.",
         )

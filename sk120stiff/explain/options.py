@@ -78,7 +78,7 @@ def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Mo
         if not found:
             raise InputError(
                 f"these readings do not hold what {wanted!r} needs",
-                where=str(used.path or "measurements"),
+                where=used.place,
                 remedy=f"It needs {needed}." if needed else "See what its law takes.",
             )
         for effect in found:

@@ -239,7 +239,7 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
     if len(measurements.masked().poses) < 2:
         raise InputError(
             "readings of one pose alone cannot be explained: no other pose can confirm a name",
-            where=str(measurements.path or "measurements"),
+            where=measurements.place,
             remedy="Measure at two poses or more; springs alone come from 'sk120stiff identify'.",
         )
 

@@ -86,7 +86,7 @@ def _checked(found: Fit, measurements: Measurements) -> Fit:
     if not found.estimated and not found.at_bound.any():
         raise Refusal(
             "these readings show none of the free parameters",
-            where=_place(measurements),
+            where=measurements.place,
             remedy=f"Free are: {', '.join(p.name for p in found.parameters)}. Measure poses and "
             "loads that put torque on them.",
         )
@@ -95,7 +95,7 @@ def _checked(found: Fit, measurements: Measurements) -> Fit:
 
 def refuse_unusable(model: Model, measurements: Measurements) -> None:
     """Raise an `InputError` for readings that no fit of this model can be made of."""
-    where = _place(measurements)
+    where = measurements.place
     if not len(model.free):
         raise InputError(
             "no parameter of the model is free, so there is nothing to identify",
@@ -126,7 +126,3 @@ def refuse_unusable(model: Model, measurements: Measurements) -> None:
             where=f"{where}, line {line}" if line else where,
             remedy="Measure more poses, or fix parameters in the model (free: false).",
         )
-
-
-def _place(measurements: Measurements) -> str:
-    return str(measurements.path or "measurements")

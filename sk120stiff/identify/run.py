@@ -91,7 +91,7 @@ def fit(
     if not waves:
         raise InputError(
             "only positions show waves of a gear, and these readings are displacements",
-            where=str(measurements.path or "measurements"),
+            where=measurements.place,
             remedy="Leave the choice of waves out.",
         )
     kept = {model.parameter(name).name for name in fix}
@@ -121,7 +121,7 @@ def refuse_plan(measurements: Measurements) -> None:
     if measurements.is_plan:
         raise InputError(
             "no row holds a reading: these are poses to go to",
-            where=str(measurements.path or "measurements"),
+            where=measurements.place,
             remedy="Measure there, and fill the blank cells in.",
         )
 
@@ -140,6 +140,6 @@ def refuse_for_positions(measurements: Measurements, **given: object) -> None:
         raise InputError(
             f"{listed(unused)} {'is' if len(unused) == 1 else 'are'} for displacements of one "
             f"point, and these readings are {what}",
-            where=str(measurements.path or "measurements"),
+            where=measurements.place,
             remedy="Leave it out." if len(unused) == 1 else "Leave them out.",
         )

@@ -167,6 +167,11 @@ class Measurements(Tabular):
         return len(self.pose)
 
     @property
+    def place(self) -> str:
+        """Where they stand, for a message: their file, if they came from one."""
+        return str(self.path or "measurements")
+
+    @property
     def is_plan(self) -> bool:
         """No row holds a reading."""
         if self.absolute is not None:

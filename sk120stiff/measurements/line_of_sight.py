@@ -57,7 +57,7 @@ def seen_from(measurements: Measurements, points: Array) -> Measurements:
         if measurements.displacement_frame != "base":
             raise InputError(
                 "an instrument is stated, but displacements are in axes of the tool",
-                where=str(measurements.path or "measurements"),
+                where=measurements.place,
                 remedy="Give displacements in the base frame, or leave noise.instrument out.",
             )
         told = _by(measurements, stated, points)

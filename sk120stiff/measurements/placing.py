@@ -108,7 +108,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         if free and not found.marker_fitted:
             raise InputError(
                 f"{len(whole)} positions cannot tell the tracker's frame and the marker's place",
-                where=str(readings.path or "measurements"),
+                where=readings.place,
                 remedy="Measure more poses, or state where the marker sits, without 'fit: true'.",
             )
         raise _no_such_arm(cloud, found, readings, whole)
@@ -201,7 +201,7 @@ def _by_distances(robot: Robot, readings: Measurements) -> Placing | None:
             f"the fixed points are not where ax, ay, az state them in axes of the base frame: "
             f"{1e3 * found.off:.4g} mm rms are left with them there, {1e3 * found.rms:.3g} mm with "
             "them elsewhere",
-            where=str(readings.path or "measurements"),
+            where=readings.place,
             remedy="Write 'position: {frame: unknown}' into the YAML file: the places are then "
             "known against each other alone. Or state them in base axes.",
         )
@@ -233,7 +233,7 @@ def _refuse_slips(
     So many conventions are tried that one of them always does better on few poses: it has to leave
     what a calibrated arm leaves, too.
     """
-    where = str(readings.path or "measurements")
+    where = readings.place
     told = _left(found)
     few = cloud.some()
     base = few.placed(fit_marker=True)[0].rms
@@ -303,7 +303,7 @@ def _refuse_moved(
     cloud: Cloud, told: str, least: float, readings: Measurements, rows: Index
 ) -> None:
     """Refuse positions of a tracker that moved once, or that stand in other rows from one on."""
-    where, line = str(readings.path or "measurements"), readings.line[rows]
+    where, line = readings.place, readings.line[rows]
     moved = None
     if readings.absolute is not None and readings.absolute.frame == "unknown":
         moved = moved_at(cloud)
@@ -336,7 +336,7 @@ def _refuse_exchange(cloud: Cloud, found: Registration, readings: Measurements) 
     tried = min(markers(cloud.some()), key=lambda item: item[0], default=None)
     if tried is not None and tried[0] < BETTER * found.rms:
         _, rms, what, remedy = tried
-        where = str(readings.path or "measurements")
+        where = readings.place
         raise InputError(
             f"{_left(found)}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
         )
@@ -379,7 +379,7 @@ def _refuse_other_axes(
     raise InputError(
         "these positions are not in axes of the base frame: they are turned by "
         f"{np.degrees(angle):.1f} deg and {1e3 * off:.4g} mm off",
-        where=str(readings.path or "measurements"),
+        where=readings.place,
         remedy="Write 'position: {frame: unknown}' into the YAML file: the tracker's own axes are "
         "then found by the fit. Or turn them into base axes.",
     )

@@ -134,7 +134,7 @@ def place_distances(robot: Robot, readings: Measurements) -> Ranged | None:
     )  # fmt: skip
     found = bar.solved()
     if found.rms > FITS * found.spread:
-        where = str(readings.path or "measurements")
+        where = readings.place
         told = (
             f"these are not distances of this robot's marker from fixed points: "
             f"{1e3 * found.rms:.4g} mm are left after the best placing of the points"

@@ -91,7 +91,7 @@ def _refusal(
         "the tool's rotations are not those of the placed robot: they are "
         f"{np.degrees(left):.3g} deg off (median)"
     )
-    where = str(readings.path or "measurements")
+    where = readings.place
     best = min(slips, key=lambda item: item[0])
     if best[0] < min(BETTER * left, FITS):
         return InputError(f"{told}. {best[1]}", where=where, remedy=best[2])

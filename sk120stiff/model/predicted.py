@@ -171,7 +171,7 @@ def refuse_unknown_place(model: Model, measurements: Measurements) -> None:
     if not knows_place(model, measurements):
         raise InputError(
             "the model does not know where the tracker stands",
-            where=str(measurements.path or "measurements"),
+            where=measurements.place,
             remedy="Give a model that was fitted to readings of this tracker, as 'identify' and "
             "'explain' write it.",
         )

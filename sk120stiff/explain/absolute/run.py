@@ -220,7 +220,7 @@ def _refuse_few_poses(readings: Measurements) -> None:
         alone = "displacements of one point, without turns, are explained from two poses on"
     raise InputError(
         f"{count} poses: no other pose can confirm a name",
-        where=str(readings.path or "measurements"),
+        where=readings.place,
         remedy=f"Measure at {fewest} poses or more; {alone}.",
     )
 

@@ -289,7 +289,7 @@ def _refuse_too_few(problem: PoseProblem) -> None:
         raise InputError(
             f"{len(problem.rows)} numbers cannot tell the {len(frame)} of the tracker's frame and "
             "of how the marker sits",
-            where=str(problem.measurements.path or "measurements"),
+            where=problem.measurements.place,
             remedy="Measure more poses.",
         )
 
@@ -310,7 +310,7 @@ def _refuse_no_rest(problem: PoseProblem) -> None:
     raise InputError(
         f"{len(problem.rows)} numbers at {len(measured.poses)} poses, and as many values to "
         "estimate: nothing is left that could tell how sure they are",
-        where=str(measured.path or "measurements"),
+        where=measured.place,
         remedy="Measure more poses, or state the noise: noise: {sigma: 30, unit: um}.",
     )
 

@@ -73,7 +73,7 @@ def refuse_other_forces(found: Calibration, readings: Measurements) -> None:
     raise InputError(
         f"the forces look stated otherwise: {said}, springs leave {share} of the gap that they "
         "leave as the forces stand",
-        where=str(readings.path or "measurements"),
+        where=readings.place,
         remedy=mend,
     )
 

@@ -85,7 +85,7 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
         return (f"{looks[0].upper()}{looks[1:]}.",)
     raise InputError(
         looks,
-        where=str(readings.path or "measurements"),
+        where=readings.place,
         remedy=f"Hangs it from a wall or a ceiling? Write {_told(best, size)} into the YAML file; "
         f"or {_told(stated, size)}, if that is right.",
     )

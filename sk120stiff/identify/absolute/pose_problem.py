@@ -33,7 +33,7 @@ def absolute_of(readings: Measurements) -> Absolute:
         InputError: They are displacements of one point.
     """
     if readings.absolute is None:
-        raise InputError("there are no positions", where=str(readings.path or "measurements"))
+        raise InputError("there are no positions", where=readings.place)
     return readings.absolute
 
 
@@ -256,7 +256,7 @@ class PoseProblem(Problem):
         if size == 0.0:
             raise InputError(
                 "inclinations are told against gravity, and gravity is stated to be 0",
-                where=str(self.measurements.path or "measurements"),
+                where=self.measurements.place,
                 remedy="Write gravity: [0, 0, -9.81], or where it points to, into the YAML file.",
             )
         return np.asarray(down / size)

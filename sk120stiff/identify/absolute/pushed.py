@@ -105,7 +105,7 @@ def refuse_pushed(
         f"{cause.own} then, and the arm is one. Or one label for all, if nothing was moved."
     )
     if sure:
-        raise InputError(looks, where=str(readings.path or "measurements"), remedy=remedy)
+        raise InputError(looks, where=readings.place, remedy=remedy)
     return (f"{looks[0].upper()}{looks[1:]}. {remedy}",)
 
 

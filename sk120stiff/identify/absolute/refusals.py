@@ -32,9 +32,7 @@ def nowhere(readings: Measurements) -> InputError:
             "the base frame; or read positions beside them."
         )
     return InputError(
-        f"{why}: nothing tells where the instrument stands",
-        where=str(readings.path or "measurements"),
-        remedy=remedy,
+        f"{why}: nothing tells where the instrument stands", where=readings.place, remedy=remedy
     )
 
 
@@ -74,6 +72,6 @@ def refuse_a_wrong_end(found: Fit, placed: Placing, readings: Measurements) -> N
         raise Refusal(
             f"the fit went astray: it leaves {1e3 * left:.3g} mm, where the rigid arm, placed "
             f"alone, leaves {1e3 * placed.rms:.3g} mm",
-            where=str(readings.path or "measurements"),
+            where=readings.place,
             remedy="Start from another model: values in this one are far from the arm's.",
         )

@@ -110,7 +110,7 @@ def held_out(
             "poses cannot be left out: there is only one"
             if measured is not None
             else "there are no measured displacements",
-            where=str(used.path or "measurements"),
+            where=used.place,
             remedy="Measure at two poses or more.",
         )
     squares: list[Array] = []
