@@ -20,8 +20,9 @@ from scipy.special import log_ndtr, logsumexp
 from scipy.stats import chi2
 
 from sk120stiff.arrays import Array, Index
+from sk120stiff.explain.candidates.sums import Sums
 from sk120stiff.explain.priors import price
-from sk120stiff.pilot.linear import LinearMap, Sums
+from sk120stiff.pilot.linear import LinearMap
 
 SIZES = (0.3, 1.0, 3.0, 10.0)  # typical sizes that an effect may have, equally probable
 NOTHING = 0.5  # probability beforehand that nothing is missing

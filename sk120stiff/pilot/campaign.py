@@ -14,12 +14,13 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.data_checks import without_copies
 from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.errors import two_digits
+from sk120stiff.explain.candidates.sums import sums_of
 from sk120stiff.identify import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Model
 from sk120stiff.pilot.belief import Belief, Hypothesis
 from sk120stiff.pilot.choosing import best, expected, separation
-from sk120stiff.pilot.linear import LinearMap, Sums
+from sk120stiff.pilot.linear import LinearMap
 from sk120stiff.plan import Pool
 from sk120stiff.plan.design import DISPLACEMENT
 
@@ -117,7 +118,7 @@ class Campaign:
         """
         linear = self.linear
         size = len(linear.scale)
-        found = Belief(linear, Sums.none(size))
+        found = Belief(linear, sums_of(np.zeros((0, size)), np.zeros(0)))
         if readings is None:
             return found
         used = without_copies(readings)[0].masked()
@@ -130,7 +131,7 @@ class Campaign:
             predicted, derivative = self.rows(problem.load_cases, v)
             X = problem.whitener.apply(derivative)
             y = problem.whitener.apply(problem.measured - predicted) + X @ v
-            found = Belief(linear, Sums.none(size).plus(X, y))
+            found = Belief(linear, sums_of(X, y))
             leader = found.leader
             v = np.zeros(size)
             v[leader.columns] = leader.mean

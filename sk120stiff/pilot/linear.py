@@ -107,25 +107,3 @@ class LinearMap:
         """(N, 3) displacements of the base model, and (N, 3, P) change per typical size [m]."""
         predicted, derivative = self.model.predict_with_sensitivities(load_cases)
         return predicted, derivative * self.scale
-
-
-@dataclass(frozen=True, eq=False)
-class Sums:
-    """XᵀX, Xᵀy, yᵀy and the number of whitened rows, of all readings so far."""
-
-    gram: Array
-    moment: Array
-    square: float
-    count: int
-
-    @classmethod
-    def none(cls, size: int) -> Self:
-        """Before the first reading."""
-        return cls(np.zeros((size, size)), np.zeros(size), 0.0, 0)
-
-    def plus(self, X: Array, y: Array) -> Sums:
-        """With more whitened rows X (R, P), y (R,)."""
-        return Sums(
-            self.gram + X.T @ X, self.moment + X.T @ y, self.square + float(y @ y),
-            self.count + len(y),
-        )  # fmt: skip

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from sk120stiff.explain.candidates.sums import sums_of
 from sk120stiff.model import base_model
 from sk120stiff.pilot.belief import NOTHING, SIZES, TWO, Belief
 from sk120stiff.pilot.campaign import Campaign
 from sk120stiff.pilot.choosing import best, expected
-from sk120stiff.pilot.linear import Sums
 from sk120stiff.plan import Cell, Rig, feasible_pool
 from sk120stiff.robot import load_robot
 from tests.pilot.simulated import SIGMA, Bench, campaigns
@@ -37,7 +37,7 @@ def belief_after(
     X = made.X[rng.choice(len(made.X), rows, replace=False)].reshape(-1, made.X.shape[2])
     own = made.linear.columns[index(made, truth)]
     y = X[:, own] @ np.full(len(own), size) + rng.normal(size=len(X))
-    return Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+    return Belief(made.linear, sums_of(X, y))
 
 
 def test_the_evidence_is_the_density_of_the_readings() -> None:
@@ -46,7 +46,7 @@ def test_the_evidence_is_the_density_of_the_readings() -> None:
     rng = np.random.default_rng(3)
     X = made.X[rng.choice(len(made.X), 6, replace=False)].reshape(-1, made.X.shape[2])
     y = rng.normal(size=len(X))
-    belief = Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+    belief = Belief(made.linear, sums_of(X, y))
     near, wide = (X[:, made.linear.base] * spread for spread in made.linear.spread)
 
     def density(columns: np.ndarray, sizes: Sequence[float] = SIZES) -> float:
@@ -115,7 +115,7 @@ def test_springs_of_a_model_count_and_may_be_wrong_all_the_same() -> None:
     for times, near in ((1.2, True), (30.0, False)):
         X = made.X[np.argmax(shown), :1]
         y = X[:, base] @ ((times - 1.0) * values) + rng.normal(size=len(X))
-        belief = Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+        belief = Belief(made.linear, sums_of(X, y))
         (nothing,) = (h for h in belief.hypotheses if not h.members)
         std = np.sqrt(np.diag(nothing.covariance))
         assert bool(std.max() < 0.05 * made.linear.spread[-1].max()) is near
@@ -146,7 +146,7 @@ def test_what_no_reading_separates_is_called_hopeless() -> None:
     X = campaign.X.reshape(-1, campaign.X.shape[2])
     own = campaign.linear.columns[e]
     y = X[:, own] @ np.full(len(own), 3.0) + np.random.default_rng(0).normal(size=len(X))
-    belief = Belief(campaign.linear, Sums.none(X.shape[1]).plus(X, y))
+    belief = Belief(campaign.linear, sums_of(X, y))
     stop = campaign._stop(belief, None)
     assert stop is not None
     meant = {part for name in stop.names for part in name.split(" with ")}
@@ -158,7 +158,7 @@ def test_what_no_reading_separates_is_called_hopeless() -> None:
 def test_all_sizes_count_before_anything_is_known() -> None:
     """What a reading could show of an effect is not that of its smallest size alone."""
     made = bench().campaign
-    belief = Belief(made.linear, Sums.none(made.X.shape[2]))
+    belief = Belief(made.linear, sums_of(np.zeros((0, made.X.shape[2])), np.zeros(0)))
     k = len(made.linear.base)
     for h in belief.hypotheses:
         if len(h.members) == 1:
@@ -198,7 +198,7 @@ def test_no_rounding_leaves_less_than_nothing() -> None:
     for row in range(10):
         X = made.X[row]
         y = X[:, made.linear.base] @ np.array([300.0, -20.0, 1.0])
-        belief = Belief(made.linear, Sums.none(X.shape[1]).plus(X, y))
+        belief = Belief(made.linear, sums_of(X, y))
         assert min(h.misfit for h in belief.hypotheses) >= 0.0
 
 
@@ -223,7 +223,7 @@ def test_what_a_spring_was_taken_to_be_is_no_standard_error() -> None:
     campaign = Campaign.of(base_model(robot), pool, SIGMA, target=0.05)
     X = campaign.X[:40].reshape(-1, campaign.X.shape[2])
     y = np.random.default_rng(2).normal(size=len(X))
-    belief = Belief(campaign.linear, Sums.none(X.shape[1]).plus(X, y))
+    belief = Belief(campaign.linear, sums_of(X, y))
     *known, last = campaign._springs(belief)
     assert last[0].startswith("joint_springs:wrist_3_joint") and np.isinf(last[2])
     assert all(np.isfinite(std) for _, _, std, _ in known)
