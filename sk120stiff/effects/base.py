@@ -183,7 +183,6 @@ class Effect(ABC):
             >>> sk.effect(robot, "link_bending", "link_6_t").special_case_of(robot)
             'tool_compliance:tool0'
         """
-        del robot
         return None
 
     @property
@@ -261,7 +260,6 @@ class LinearElastic(Elastic):
 
     def by_parameter(self, torques: Array, load_cases: LoadCases, values: Array) -> Array:
         """See `Elastic.by_parameter`: it does not go with the values."""
-        del values
         patterns = self.patterns_at(load_cases)
         indices = "pij,nj->nip" if patterns.ndim == 3 else "pnij,nj->nip"
         return np.asarray(np.einsum(indices, patterns, torques))
@@ -381,10 +379,7 @@ class Viewpoint(Effect):
 
     @abstractmethod
     def columns(self, load_cases: LoadCases, turned: Array, values: Array) -> Array:
-        """(N, 6, P) change of position and of orientation as read, instrument axes.
-
-        `turned` (N, 3) is R X [m].
-        """
+        """(N, 6, P) change of position and turn, instrument axes; `turned` (N, 3) is R X [m]."""
 
 
 class Mounting(Effect):
