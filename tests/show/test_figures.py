@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 
 from sk120stiff.errors import InputError
+from sk120stiff.explain.findings import Step
 from sk120stiff.show import figures as f
 from sk120stiff.show import inline_svg, palette, save_figure
 from sk120stiff.show.figures.scores import score_bars
@@ -48,7 +49,7 @@ def every_figure() -> dict[str, Figure]:
             ["1", "2"], {"before": [4e-5, 3e-5], "after": [1e-5, 2e-5]}, noise_floor=1e-5
         ),
         "gap_waterfall": f.gap_waterfall(
-            [f.GapStep("springs", 4e-5, 5e-5), f.GapStep("+ rocking", 1e-5)], noise_floor=1e-5
+            [Step("springs", 4e-5, 5e-5), Step("+ rocking", 1e-5, np.nan)], noise_floor=1e-5
         ),
         "posture_choice": f.posture_choice(
             np.array([1e-4, 2e-4]),

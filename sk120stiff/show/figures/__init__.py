@@ -3,7 +3,7 @@
 from sk120stiff.show.figures.curves import LoadCurve, force_deflection
 from sk120stiff.show.figures.definite import definiteness_map
 from sk120stiff.show.figures.ellipses import PlaneEllipse, plane_ellipses
-from sk120stiff.show.figures.gaps import GapStep, gap_per_pose, gap_waterfall
+from sk120stiff.show.figures.gaps import gap_per_pose, gap_waterfall
 from sk120stiff.show.figures.parameters import Estimate, parameter_forest
 from sk120stiff.show.figures.parts import relief_parts, surface_parts
 from sk120stiff.show.figures.postures import posture_choice
@@ -11,7 +11,6 @@ from sk120stiff.show.figures.slices import stiffness_slice
 
 __all__ = [
     "Estimate",
-    "GapStep",
     "LoadCurve",
     "PlaneEllipse",
     "definiteness_map",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,14 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-@dataclass(frozen=True)
-class GapStep:
-    """One step of a growing model; root-mean-square gaps in metres."""
-
-    model: str
-    fit_rms: float
-    heldout_rms: float | None = None
+    from sk120stiff.explain.findings import Step
 
 
 def gap_per_pose(
@@ -70,7 +62,7 @@ def gap_per_pose(
 
 
 def gap_waterfall(
-    steps: Sequence[GapStep],
+    steps: Sequence[Step],
     *,
     noise_floor: float | None = None,
     unit: str = "µm",
@@ -79,9 +71,7 @@ def gap_waterfall(
     if not steps:
         raise InputError("no model to draw")
     fit = 1e6 * np.array([step.fit_rms for step in steps])
-    held = 1e6 * np.array(
-        [np.nan if s.heldout_rms is None else s.heldout_rms for s in steps], dtype=float
-    )
+    held = 1e6 * np.array([step.heldout_rms for step in steps])
     with styled():
         figure = new_figure(1.15 + 0.42 * len(steps))
         panel = figure.subplots()
@@ -107,7 +97,7 @@ def gap_waterfall(
             panel.plot(held, rows, "D", color=palette.PAPER, markeredgecolor=palette.INK,
                        markersize=7, label="held-out poses", zorder=4)  # fmt: skip
         _floor(panel, noise_floor, vertical=True, unit=unit)
-        panel.set_yticks(rows, [step.model for step in steps])
+        panel.set_yticks(rows, [step.label for step in steps])
         panel.invert_yaxis()
         panel.set_xlim(0.0, farthest)
         panel.set_xlabel(f"rms gap [{unit}]")

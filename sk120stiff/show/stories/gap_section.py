@@ -9,7 +9,7 @@ from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.words import held_out_words, plain_words
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
-from sk120stiff.show.figures import GapStep, gap_per_pose, gap_waterfall
+from sk120stiff.show.figures import gap_per_pose, gap_waterfall
 from sk120stiff.show.report import Block, Picture, SceneFrame, Section, Table
 from sk120stiff.show.stories.pictures import exaggeration, gap_vectors
 from sk120stiff.show.stories.scenes import arm_views, models_of
@@ -77,8 +77,8 @@ def steps_table(answer: Explanation) -> Table:
 def waterfall(answer: Explanation) -> Picture:
     """The gap falling from step to step, fitted and held out, over what noise alone makes."""
     floor = answer.noise_floor
-    steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
-    first, last = answer.steps[0], answer.steps[-1]
+    steps = answer.steps
+    first, last = steps[0], steps[-1]
     return Picture(
         lambda: gap_waterfall(steps, noise_floor=floor),
         alt=f"Bars of the gap of {len(steps)} models. Fitted: from {um(first.fit_rms)} to "

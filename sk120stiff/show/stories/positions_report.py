@@ -10,7 +10,7 @@ from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.findings import sentence_in
 from sk120stiff.identify.absolute.words import findings, unseen
-from sk120stiff.show.figures import GapStep, gap_waterfall
+from sk120stiff.show.figures import gap_waterfall
 from sk120stiff.show.figures.budget import budget_bars
 from sk120stiff.show.report import (
     Items,
@@ -134,10 +134,9 @@ def _steps(answer: Explained) -> Picture:
     """The gap falling from cause to cause, as in every report."""
     first, end, unit = answer.steps[0], answer.steps[-1], answer.final.problem.unit
     stated = answer.final.problem.stated_sigma
-    steps = [GapStep(s.label, s.fit_rms, s.heldout_rms) for s in answer.steps]
     return Picture(
-        lambda: gap_waterfall(steps, noise_floor=stated, unit=unit),
-        alt=f"Bars of the gap of {len(steps)} models; held out from {um(first.heldout_rms)} "
+        lambda: gap_waterfall(answer.steps, noise_floor=stated, unit=unit),
+        alt=f"Bars of the gap of {len(answer.steps)} models; held out from {um(first.heldout_rms)} "
         f"to {um(end.heldout_rms)} {answer.final.problem.rms_unit}.",
         caption="Bars: readings that were fitted. Diamonds: poses left out."
         + ("" if stated is None else " Dashed: the stated noise."),
