@@ -142,17 +142,13 @@ def fold(
     place[soft] = np.arange(s)
     K_mean = np.eye(s) if K_theta is None else K_theta
     return Fold(
-        start=frames.start,
-        shift=frames.shift,
-        final=frames.final,
-        tilt=frames.tilt,
+        **frames._asdict(),
         pose_map=pose_map,
         value=np.ascontiguousarray(value),
         n=n,
         actuated=n_a,
         inputs=m if given else n_a,
         given=given,
-        offset=frames.offset,
         slides=(~chain.revolute).astype(float),
         kind=kind.astype(np.int64),
         constant=np.stack([np.cos(frames.offset), np.sin(frames.offset)], axis=1),
@@ -161,7 +157,6 @@ def fold(
         column_soft=place[coordinates],
         column_factor=to_joints[joints, coordinates],
         mass=chain.masses,
-        centre=frames.centre,
         weighs=weighs,
         gravity=np.zeros(3) if gravity is None else np.asarray(gravity, dtype=float),
         soft=np.asarray(soft, dtype=np.int64),
