@@ -19,9 +19,11 @@ from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
+from sk120stiff.measurements.columns import FORCES, MOMENTS
 from sk120stiff.model import Model, seen_from
 from sk120stiff.plan import Verdict, feasible, lowest_points
 from sk120stiff.programs.orientation import fixed_xyz
+from sk120stiff.programs.placing import ANYWHERE, PLACES
 from sk120stiff.robot import Robot
 from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import (
@@ -36,9 +38,6 @@ from sk120stiff.workspace import (
     read_path,
     write_joints,
 )
-
-_PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
-_LOADS = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
 class Minimise(StrEnum):
@@ -152,13 +151,14 @@ def command(
     loads = found.judge.loads(found.placement)
     columns: list[tuple[str, str, Array]] = []
     if found.placement[3:].any():
-        has = [(name, "force" if k < 3 else "moment", loads[:, k]) for k, name in enumerate(_LOADS)]
+        kinds = {**dict.fromkeys(FORCES, "force"), **dict.fromkeys(MOMENTS, "moment")}
+        has = [(name, kind, loads[:, k]) for k, (name, kind) in enumerate(kinds.items())]
         columns = [column for column in has if column[0] in given.table.headers]
     if found.placement.any():
         columns += [(name, "length", stands[:, k, 3]) for k, name in enumerate("xyz")]
     if given.rotation is not None:
         angles = np.deg2rad(fixed_xyz(stands[:, :3, :3]))
-        columns += [(name, "angle", angles[:, k]) for k, name in enumerate(_PLACES[3:])]
+        columns += [(name, "angle", angles[:, k]) for k, name in enumerate(PLACES[3:])]
     for name, kind, si in columns:
         values = np.asarray(from_si(si, given.table.column_units[name], kind))
         notes[given.table.headers[name]] = [f"{value:.10g}" for value in values]
@@ -187,7 +187,7 @@ def command(
         "per_point": found.per_point,
         "joints": robot.actuated,
         "a": found.a,
-        "placement": dict(zip(_PLACES, found.placement.tolist(), strict=True)),
+        "placement": dict(zip(PLACES, found.placement.tolist(), strict=True)),
         "condition": float(found.condition.min()),
         "limit_margin": found.limit_margin,
         "blind_choice": {
@@ -292,7 +292,7 @@ def _freedom(task: PathTask, place: Placement | None) -> str:
             f"{name} of the part over {1e3 * width:.0f} mm"
             if name in "xyz"
             else f"{name} of the part over {np.degrees(width):.0f}°"
-            for name, width in zip(_PLACES, span, strict=True)
+            for name, width in zip(PLACES, span, strict=True)
             if width
         ]
     return ", ".join(free)
@@ -300,10 +300,9 @@ def _freedom(task: PathTask, place: Placement | None) -> str:
 
 def _placement(text: str, position: Array) -> Placement:
     """Ranges like ``x=-300:300 mm`` about the middle of the path."""
-    limits = {name: (-np.inf, np.inf, "length" if name in "xyz" else "angle") for name in _PLACES}
     lower, upper = np.zeros(6), np.zeros(6)
-    for axis in parse_axes([text], limits, where="--place", ranges=True):
-        k = _PLACES.index(axis.name)
+    for axis in parse_axes([text], ANYWHERE, where="--place", ranges=True):
+        k = PLACES.index(axis.name)
         lower[k], upper[k] = axis.values[0], axis.values[-1]
     return Placement(position.mean(axis=0), lower, upper)
 
@@ -332,7 +331,7 @@ def _parts(found: BestPosture, minimise: Minimise, files: list[str], slides: boo
     if found.placement.any():
         moved = [
             f"{name} {value * 1e3:.1f} mm" if name in "xyz" else f"{name} {np.degrees(value):.2f}°"
-            for name, value in zip(_PLACES, found.placement, strict=True)
+            for name, value in zip(PLACES, found.placement, strict=True)
             if value
         ]
         parts.append(f"The part is moved by {', '.join(moved)}.")

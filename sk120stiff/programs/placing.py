@@ -14,7 +14,8 @@ from sk120stiff.units import from_si, parse_values
 from sk120stiff.workspace import LoadedPath, parse_axes
 
 TOOL_DOWN = "180,0,0 deg"  # the tool's z axis against the part's, their x axes alike
-_PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
+PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
+ANYWHERE = {name: (-np.inf, np.inf, "length" if name in "xyz" else "angle") for name in PLACES}
 
 
 def part_frame(text: str) -> Array:
@@ -23,9 +24,8 @@ def part_frame(text: str) -> Array:
     Raises:
         InputError: An unknown name, a range, or a missing unit.
     """
-    limits = {name: (-np.inf, np.inf, "length" if name in "xyz" else "angle") for name in _PLACES}
-    values = dict.fromkeys(_PLACES, 0.0)
-    axes = parse_axes([text], limits, where="--frame")
+    values = dict.fromkeys(PLACES, 0.0)
+    axes = parse_axes([text], ANYWHERE, where="--frame")
     for axis in axes:
         if len(axis.values) != 1 or [other.name for other in axes].count(axis.name) > 1:
             raise InputError(
@@ -34,7 +34,7 @@ def part_frame(text: str) -> Array:
                 remedy="Say where the part lies: 'x=1200 mm; yaw=90 deg'.",
             )
         values[axis.name] = float(axis.values[0])
-    *xyz, roll, pitch, yaw = (values[name] for name in _PLACES)
+    *xyz, roll, pitch, yaw = (values[name] for name in PLACES)
     return homogeneous(xyz, rotation_from_rpy(np.array([roll, pitch, yaw])))
 
 
@@ -45,7 +45,7 @@ def place_text(T: Array) -> str:
     said = [
         f"{name}={round(value, 6) + 0.0:.9g} {unit}"
         for values, unit in ((1e3 * T[:3, 3], "mm"), (angles, "deg"))
-        for name, value in zip(_PLACES[:3] if unit == "mm" else _PLACES[3:], values, strict=True)
+        for name, value in zip(PLACES[:3] if unit == "mm" else PLACES[3:], values, strict=True)
         if abs(value) >= 1e-6
     ]
     return "; ".join(said) or "x=0 mm"

@@ -24,6 +24,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.files import csv_text, write_atomically
+from sk120stiff.measurements.columns import DISPLACEMENTS, FORCES, MOMENTS, POSITIONS
 from sk120stiff.measurements.table import Table, read_table
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
@@ -34,9 +35,7 @@ from sk120stiff.workspace.inverse import Task, near, solve_inverse, starting_pos
 from sk120stiff.workspace.reach import why_unreached
 
 FIRST = np.array([0])
-FORCES, MOMENTS = ("fx", "fy", "fz"), ("mx", "my", "mz")
-READ = ("dx", "dy", "dz")  # what instruments read
-POSITIONS, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
+ANGLES = ("roll", "pitch", "yaw")
 STARTS = 32  # poses from which the first point of a path is sought
 SAME_BRANCH = 0.05  # rad or m between solutions that count as one
 NEIGHBOURS = 0.1  # rad or m: neighbours of one block that are farther apart are sought one by one
@@ -115,7 +114,7 @@ def read_path(
     if by_joint:
         kinds = zip(robot.actuated, robot.kinds, strict=True)
         joints = np.hstack([table.quantities((name,), kind) for name, kind in kinds])
-    read = [name for name in READ if name in has]
+    read = [name for name in DISPLACEMENTS if name in has]
     if by_joint and read:
         warn(
             f"{table.path} looks like readings: displacements stand beside its joints "

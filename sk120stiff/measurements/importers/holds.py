@@ -16,7 +16,7 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.measurements.columns import FORCES, MOMENTS
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.drafting import Draft
-from sk120stiff.measurements.importers.held_orientations import held_orientations
+from sk120stiff.measurements.importers.held_orientations import NORMAL, held_orientations
 from sk120stiff.measurements.importers.pose_labels import near_poses
 from sk120stiff.measurements.poses import rows_at_rest
 
@@ -25,7 +25,6 @@ LEAST = 5  # rows of a hold; the running median keeps plateaus that long
 SAME = 5.0  # σ between running medians: at two edges of a short plateau they are its extremes
 ODD = 6.0  # σ off the median of its hold: such a row is of another load
 WITHIN = (0.95, 1.96)  # of normal errors this share lies within so many σ
-NORMAL = 1.4826  # standard deviation of normal errors over the median of their sizes
 SMALL = 0.03  # of how loads differ from hold to hold: noise, and no loads one by one
 MANY = 2000  # rows of a recording: nobody reads as many one by one
 EVEN = 5.0  # times the noise along another axis: one sensor is about as noisy along each

@@ -19,8 +19,7 @@ from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.importers.told import Told, numbers, quantity, unit_of
 from sk120stiff.measurements.importers.words import unit_of_header
 from sk120stiff.measurements.poses import rows_by_label
-
-STANDARD_GRAVITY = 9.80665  # m/s², exact by definition
+from sk120stiff.robot import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,11 @@ from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.columns import FORCES
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.grid import is_number
-from sk120stiff.measurements.importers.loads import STANDARD_GRAVITY
 from sk120stiff.measurements.importers.masses import MASSES
 from sk120stiff.measurements.importers.told import Told, numbers
 from sk120stiff.measurements.importers.unread_axes import GAUGE, IN_A_LETTER
 from sk120stiff.measurements.importers.words import unit_of_header
+from sk120stiff.robot import STANDARD_GRAVITY
 
 _BRANCHES = {
     "load": "load|loading|up|upward|upwards|rising|increasing|auf|aufwärts|hoch|belastet|belastung|"
