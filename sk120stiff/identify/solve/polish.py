@@ -28,6 +28,7 @@ FALLEN = 1e-4  # by more than this share of what one reading adds to it
 FINE = 1e-12  # relative step at which nothing is left to gain
 LEARNED = 1e-6  # relative step below which rounding hides the curvature
 SOUND = 0.1  # least curvature over that of Gauss and Newton for which the learned one is trusted
+LONGER = 4.0  # times the last step that led downhill, in shares of Newton's, the next is tried
 GRAIN = 1e-9  # relative rounding of a sum of squares of whitened gaps
 FAINT = 1e-10  # change of the predictions, in units of their noise, that is below all rounding
 TRIAL = 1e-5  # step of a trial that is the last, as a share of the noise that is left
@@ -81,7 +82,7 @@ def polish(
     """
     x = _snapped(start, bounds)
     residual, jacobian = evaluate(x)
-    count, last, due = 1, np.inf, 1
+    count, last, due, share = 1, np.inf, 1, 1.0
     held = _pushed_out(x, residual, jacobian, bounds)
     curvature = np.zeros((len(x), len(x)))
     misfit = np.inf
@@ -104,8 +105,9 @@ def polish(
         last = size
         reach, hits = _until_bound(x, step, bounds)
         if reach > 0.0:
-            new, found, tries = _descend(evaluate, x, reach * step, residual, bounds)
+            new, found, tries = _descend(evaluate, x, share * reach * step, residual, bounds)
             count += tries
+            share = min(LONGER * share * 0.5 ** (tries - 1), 1.0) if found is not None else 1.0
             if found is None and curvature.any():
                 curvature[:] = 0.0  # what was learned misleads here
                 continue
