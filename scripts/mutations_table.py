@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from scripts.mutations_fault import Fault, of, tests
+from scripts.mutations_loads import OF_LOADS
 from scripts.mutations_positions import OF_POSITIONS
 
 STIFFNESS = tests("stiffness", "complementary", "cartesian", "critical", "principal", "energy")
@@ -12,6 +13,7 @@ FIT = tests("identify", "fit", "uncertainty", "lack_of_fit", "noise")
 
 FAULTS: tuple[Fault, ...] = (
     *OF_POSITIONS,
+    *OF_LOADS,
     *of(
         "robot/kinematics/chain.py", "tests/robot/test_kinematics.py", "tests/model",
         a_mass_where_its_joint_would_be_at_rest=("position + own @ rotation if own.any() else position", "position + own[:, None] if own.any() else position"),
@@ -96,7 +98,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "stiffness/equilibrium.py", *tests("stiffness", "equilibrium", "deflection", "weight"),
-        Newton_with_the_wrong_sign_of_K_C=("feedback = compliance[own] @ complementary", "feedback = -compliance[own] @ complementary"),
+        Newton_with_the_wrong_sign_of_K_C=("feedback = compliance[own] @ _load", "feedback = -compliance[own] @ _load"),
         weight_without_its_stiffness=("feedback = feedback + sag[own] @ hanging", "feedback = feedback"),
         balance_never_lost=("good = good & _stable(inner) &", "good = good &"),
         equilibrium_that_need_not_settle=("good = good & (largest[..., 0] <= tolerance)", "good = good & (largest[..., 0] <= 1e9)"),

@@ -7,8 +7,7 @@ class          what it changes                                             examp
 =============  ==========================================================  ======================
 `Elastic`      elongation of coordinates under load, e(τ)                  joint springs, a beam
 `Geometric`    where the unloaded arm really is, z₀                        joint offset
-`Imposed`      where coordinates go between zero and reading by            creep, warming up
-               themselves, z₀ + S·p, whatever the load is
+`Imposed`      where coordinates go by themselves after zero, z₀ + S·p     creep, warming up
 `Weighing`     the arm's own weight, (1 + Σ p) of what is stated           masses of links
 `LoadError`    the load, W_true = W + (S·p) W + o·p in sensor axes         force bias
 `ReadingError` the displacement read, d_read = d + (S·p) d + o·p           tracker misalignment
@@ -361,6 +360,7 @@ class LoadError(Misreading):
     """The load differs from what was reported; x is the wrench (6) in sensor axes [N, N·m]."""
 
     of_payload: ClassVar[bool] = False  # masses that are hung on the tool have it, too
+    hangs: ClassVar[bool] = False  # a weight: it pulls along gravity however the tool turns
 
 
 class ReadingError(Misreading):

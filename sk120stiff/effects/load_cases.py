@@ -42,7 +42,7 @@ class LoadCases:
     Attributes:
         robot: The rigid robot.
         a: (N, n) commanded coordinates [rad or m].
-        wrench: (N, 6) load as reported, base axes, at `force_point` [N, N·m].
+        wrench: (N, 6) load as reported, base axes of the unloaded arm, at `force_point` [N, N·m].
         rotation: (N, 3, 3) unloaded tool frame in base axes.
         point, force_point: (3,) measured point, or (N, 3) where it differs, and (3,) point of the
             force, in the tool frame [m].
@@ -54,6 +54,7 @@ class LoadCases:
         branch: (N,) +1 while the load grows, -1 while it falls.
         pose: (N,) index into `poses`.
         poses: Labels of the poses.
+        follows: The load was read by a sensor on the tool: it turns with it, but for `hanging`.
         absolute: Readings say where the point stands, not how far it went under a load.
         payload: (N,) mass that hangs on the tool as stated [kg], or None.
         payload_point: (3,) where a payload hangs, in the tool frame [m]; None where there is none.
@@ -79,6 +80,7 @@ class LoadCases:
     branch: Array
     pose: Index
     poses: tuple[str, ...]
+    follows: bool = False
     absolute: bool = False
     payload: Array | None = None
     payload_point: Array | None = None
@@ -107,6 +109,16 @@ class LoadCases:
         Pose 3 of one file is not that of another, and its zero reading was another one.
         """
         return replace(self, poses=tuple(f"{label} of another file" for label in self.poses))
+
+    @property
+    def hanging(self) -> Array:
+        """(N, 6) weight of the stated payload, part of `wrench`, base axes [N, N·m]."""
+        out = np.zeros((self.count, 6))
+        if self.payload is not None and self.payload_point is not None:
+            out[:, :3] = self.payload[:, None] * self.robot.gravity_in_base
+            lever = np.einsum("nij,j->ni", self.rotation, self.payload_point - self.force_point)
+            out[:, 3:] = np.cross(lever, out[:, :3])
+        return out
 
     def since(self, of: str, reference: Reference | None) -> Array | None:
         """(N,) `temperature`, `time` or `order` since a reference [K, s or 1]; None: not read.
@@ -293,8 +305,8 @@ def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
     measurements = measurements.with_joints(robot.actuated, robot.kinds)
     a = measurements.joints
     rotation = robot.screws(a).rotation
-    wrench = measurements.wrench
-    if measurements.force_frame == "tool":
+    wrench, follows = measurements.wrench, measurements.force_frame == "tool"
+    if follows:
         wrench = rotate(rotation, wrench)
     identity = np.broadcast_to(np.eye(3), rotation.shape)
     labels = measurements.poses
@@ -312,6 +324,7 @@ def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
         branch=_branch_signs(measurements),
         pose=np.array([index[label] for label in measurements.pose], dtype=np.intp),
         poses=labels,
+        follows=follows and bool(wrench.any()),
         zero_a=measurements.zero_joints,
         zero_group=measurements.zero_group,
         repeat=measurements.repeat,
@@ -325,30 +338,26 @@ def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
 
 def _standing(plain: LoadCases, measurements: Measurements, said: Absolute) -> LoadCases:
     """The same readings as positions: with payload, markers, series, temperature, approach."""
-    weight = said.payload[:, None] * plain.robot.gravity_in_base
-    wrench, force_point = plain.wrench.copy(), plain.force_point
-    if not wrench.any():
-        force_point = said.payload_point
-    wrench[:, :3] += weight
-    lever = np.einsum("nij,j->ni", plain.rotation, said.payload_point - force_point)
-    wrench[:, 3:] += np.cross(lever, weight)
+    hung = replace(
+        plain,
+        force_point=plain.force_point if plain.wrench.any() else said.payload_point,
+        payload=said.payload,
+        payload_point=said.payload_point,
+    )
     labels = said.groups
     names = () if labels is None else tuple(dict.fromkeys(labels))
     stations, stood = said.stood
     temperature, references = said.temperature, references_of(measurements)
     clock = measurements.order if measurements.order is not None else measurements.time
     return replace(
-        plain,
-        wrench=wrench,
+        hung,
+        wrench=plain.wrench + hung.hanging,
         point=said.point,
-        force_point=force_point,
         order=_since_first(measurements.order),
         time=_since_first(measurements.time),
         order_at_zero=None,
         time_at_zero=None,
         absolute=True,
-        payload=said.payload,
-        payload_point=said.payload_point,
         temperature=None if temperature is None else temperature - temperature.mean(),
         series=None if labels is None else np.array([names.index(label) for label in labels]),
         series_names=names,

@@ -26,6 +26,7 @@ class Payload(LoadError):
     axes: ClassVar[str] = "axes of the tool frame, about the point where the payload hangs"
     needs: ClassVar[str] = "positions of an arm that yields under weight"
     only_absolute: ClassVar[bool] = True
+    hangs: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

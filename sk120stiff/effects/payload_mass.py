@@ -57,6 +57,7 @@ class PayloadMass(LoadError):
     also: ClassVar[str] = "mass_160: of the payload that is stated as 160 kg"
     needs: ClassVar[str] = "positions under two payloads or more that differ"
     only_absolute: ClassVar[bool] = True
+    hangs: ClassVar[bool] = True
     rare: ClassVar[bool] = True
 
     @classmethod

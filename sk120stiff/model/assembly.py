@@ -2,10 +2,10 @@
 
 Coordinates are z = [a; v], actuated and virtual. A reading is made in five steps:
 
-1. the load errors turn the reported wrench into the true one, in sensor axes;
+1. the load errors turn the reported wrench into the true one, in sensor axes (`true_load.py`);
 2. the geometric effects shift the unloaded coordinates z₀;
 3. the imposed movements s go on top, and the elastic effects find their common equilibrium
-   z = z₀ + s + e(J(z)ᵀ W);
+   z = z₀ + s + e(J(z)ᵀ W(z)), where what a sensor on the tool has read turns with the tool;
 4. the displacement is x(z) − x(z₀);
 5. the reading errors turn it into what the instrument says.
 
@@ -34,11 +34,11 @@ from sk120stiff.effects import (
     Weighing,
 )
 from sk120stiff.effects.base import Misreading, Moving, Switching
-from sk120stiff.model.misread import misread, to_sensor
+from sk120stiff.model.misread import misread
 from sk120stiff.model.standing import Solution, Standing
+from sk120stiff.model.true_load import true_load
 from sk120stiff.robot import Mechanism, Robot
 from sk120stiff.stiffness import ElasticLaw, Equilibrium, Weight, equilibrium
-from sk120stiff.stiffness.wrench import rotate
 
 KEPT = 32  # sets of effects that stay put together
 
@@ -152,25 +152,26 @@ class Assembly:
         Raises:
             Refusal: The springs cannot hold the load.
         """
-        loads = misread(self.of(LoadError), load_cases, values, to_sensor(load_cases))
-        wrench = rotate(load_cases.rotation, loads.value)
+        load = true_load(self.of(LoadError), load_cases, values)
         z_0 = self.start(load_cases, values)
         onset = np.zeros_like(z_0)
         if any(isinstance(effect, Switching) for effect in self.effects):
-            onset = self.mechanism.screws(z_0, load_cases.force_point).torques(wrench)
+            begun = self.mechanism.screws(z_0, load_cases.force_point)
+            onset = begun.torques(load.at(begun.rotation))
         law, springs = self.law(load_cases, values, onset)
         rest = equilibrium(
             self.mechanism,
             self._moved(z_0, load_cases, values),
-            wrench,
+            load.steady,
             law,
             point=self._marker(load_cases, values),
             force_point=load_cases.force_point,
+            follower=load.follower,
             soft=self.soft(values),
             weight=self.weight(springs, values),
             near=near,
         )
-        return Standing(load_cases, wrench, loads, onset, rest)
+        return Standing(load_cases, load, onset, rest)
 
     def solve(self, load_cases: LoadCases, values: Array) -> Solution:
         """Equilibrium and displacement for N readings and parameter values (P,).
@@ -187,7 +188,7 @@ class Assembly:
         displacement = stood.rest.screws.position - unloaded.screws.position[begin]
         readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(
-            load_cases, stood.wrench, stood.loads, stood.onset, stood.rest,
+            load_cases, stood.load, stood.onset, stood.rest,
             unloaded=unloaded, begin=begin, readings=readings,
         )  # fmt: skip
 

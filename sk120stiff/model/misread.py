@@ -9,7 +9,6 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LoadCases
 from sk120stiff.effects.base import Misreading
-from sk120stiff.stiffness.wrench import rotate
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +40,3 @@ def misread(
         columns.append((part, own))
         matrix = step @ matrix
     return Misread(x, matrix, tuple(columns))
-
-
-def to_sensor(load_cases: LoadCases) -> Array:
-    """(N, 6) the reported wrench in sensor axes."""
-    return rotate(np.swapaxes(load_cases.rotation, -1, -2), load_cases.wrench)

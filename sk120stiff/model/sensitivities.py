@@ -1,6 +1,7 @@
 """Exact derivatives of where a loaded arm stands, and of what is read of it.
 
-One adjoint solve per reading gives them all: with N = I − C K_C at the equilibrium,
+One adjoint solve per reading gives them all: with N = I − C K_C at the equilibrium (K_C of all that
+the load does as the arm moves: what follows the tool turns with it),
 ∂x/∂p = (J N⁻¹) ∂(s + e)/∂p, s what moves by itself and e what yields.
 """
 
@@ -130,11 +131,13 @@ def _by_weight(assembly: Assembly, rest: Equilibrium, adjoint: Array) -> Array:
 def _add_loads(out: Array, solution: Standing, adjoint: Array) -> None:
     """Add the derivatives (N, k, P) by the parameters of the load errors."""
     load_cases, rest = solution.load_cases, solution.rest
-    if not solution.loads.columns:
+    load = solution.load
+    if not (load.of_steady or load.of_follower):
         return
     loaded = rest.screws.at(load_cases.force_point)
     per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
-    for part, columns in solution.loads.columns:
-        halves = columns.reshape(len(columns), 2, 3, -1)  # forces, moments
-        turned = np.einsum("nij,nhjp->nhip", load_cases.rotation, halves).reshape(columns.shape)
-        out[:, :, part] += per_wrench @ turned
+    for axes, of in ((load_cases.rotation, load.of_steady), (loaded.rotation, load.of_follower)):
+        for part, columns in of:
+            halves = columns.reshape(len(columns), 2, 3, -1)  # forces, moments
+            turned = np.einsum("nij,nhjp->nhip", axes, halves).reshape(columns.shape)
+            out[:, :, part] += per_wrench @ turned

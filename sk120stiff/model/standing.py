@@ -9,6 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import LoadCases
 from sk120stiff.model.misread import Misread
+from sk120stiff.model.true_load import TrueLoad
 from sk120stiff.stiffness import Equilibrium
 
 
@@ -18,16 +19,14 @@ class Standing:
 
     Attributes:
         load_cases: The readings.
-        wrench: (N, 6) true load, base axes [N, N·m].
-        loads: What the force sensor made of the load.
+        load: The true load.
         onset: (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or
             N]; zero where nothing does.
         rest: Equilibrium under load and weight.
     """
 
     load_cases: LoadCases
-    wrench: Array
-    loads: Misread
+    load: TrueLoad
     onset: Array
     rest: Equilibrium
 

@@ -110,6 +110,29 @@ def complementary_stiffness(screws: Screws, wrench: ArrayLike, rows: Index | Non
     return _in_coordinates(K_C, screws.first, joints, rows, bent)
 
 
+def follower_stiffness(screws: Screws, wrench: ArrayLike, rows: Index | None = None) -> Array:
+    """Jᵀ ∂W/∂z for a force and a moment that turn with the end frame.
+
+    With v_i, w_i the parts of the Jacobian's columns, on top of `complementary_stiffness`::
+
+        K_F[i, j] = v_i · (w_j × F) + w_i · (w_j × M)
+
+    Args:
+        screws: Kinematics at the loaded point, batch shape (...).
+        wrench: (..., 6) force [N] and moment [N·m] at that point, base axes.
+        rows: (r,) coordinates whose rows alone are wanted; all n without.
+
+    Returns:
+        (..., r, n) [N·m/rad]; not symmetric, as such a load has no potential.
+    """
+    load = np.asarray(wrench, dtype=float)
+    J = np.swapaxes(screws.jacobian, -1, -2)  # (..., n, 6)
+    w = J[..., 3:]
+    turning = [cross_product(w, load[..., None, part]) for part in (slice(3), slice(3, 6))]
+    near = J if rows is None else J[..., rows, :]
+    return np.asarray(near @ np.swapaxes(np.concatenate(turning, axis=-1), -1, -2))
+
+
 def gravity_stiffness(screws: Screws, gravity: ArrayLike, rows: Index | None = None) -> Array:
     """∂τ_g/∂z (..., r, n) [N·m/rad]: K_C of the arm's own weight, spread over its links.
 

@@ -14,8 +14,10 @@ from sk120stiff.errors import Refusal
 from sk120stiff.robot import Mechanism, Screws
 from sk120stiff.stiffness.cartesian import (
     complementary_stiffness,
+    follower_stiffness,
     gravity_stiffness,
 )
+from sk120stiff.stiffness.wrench import rotate
 
 #: torques (..., n) → elongations (..., n) and their derivative by the torques (..., n, n)
 ElasticLaw = Callable[[Array], tuple[Array, Array]]
@@ -44,6 +46,7 @@ class Equilibrium:
             for.
         pulled: Kinematics at the point where the force acts.
         load: (..., 6) the load there, base axes [N, N·m].
+        following: (..., 6) the part of it that turns with the end frame, or None.
         weight: The arm's own weight, if it was asked for.
         iterations: Newton steps taken.
     """
@@ -55,13 +58,14 @@ class Equilibrium:
     weights: Array
     pulled: Screws
     load: Array
+    following: Array | None
     weight: Weight | None
     iterations: int
 
     @cached_property
     def K_C(self) -> Array:
-        """(..., n, n) complementary stiffness of the load there [N·m/rad]."""
-        return complementary_stiffness(self.pulled, self.load)
+        """(..., n, n) derivative of the load's torques by the coordinates there [N·m/rad]."""
+        return _load_stiffness(self.pulled, self.load, self.following)
 
     def feedback(self, rows: Index) -> Array:
         """(..., r, n) derivative of r elongations by all coordinates: C K_C, the weight's share.
@@ -69,7 +73,7 @@ class Equilibrium:
         The r coordinates are those that yield at all.
         """
         own = (..., rows[:, None], rows)
-        out = self.compliance[own] @ complementary_stiffness(self.pulled, self.load, rows)
+        out = self.compliance[own] @ _load_stiffness(self.pulled, self.load, self.following, rows)
         if self.weight is not None:
             hanging = gravity_stiffness(self.pulled, self.weight.gravity, rows)
             out = out + self.weight.compliance[own] @ hanging
@@ -121,14 +125,17 @@ def equilibrium(
     *,
     point: Array | None = None,
     force_point: Array | None = None,
+    follower: Array | None = None,
     soft: Index | None = None,
     weight: Weight | None = None,
     near: Array | None = None,
 ) -> Equilibrium:
     """Exact static equilibrium z = z_0 + e(J(z)ᵀ W) by Newton's method on compliances.
 
-    The load is constant in base axes and moves with its point. Newton's matrix is I − C K_C, with C
-    the tangent compliance: rigid coordinates (zero compliance) need no special treatment.
+    The load moves with its point. It is constant in base axes, but for a `follower`, which turns
+    with the end frame: W(z) = W + R(z) W_end. Newton's matrix is I − C (K_C + K_F), with C the
+    tangent compliance and K_F from what follows alone: rigid coordinates (zero compliance) need no
+    special treatment.
 
     Of several equilibria the one is meant at which the arm comes to rest as the load grows from
     zero. Newton's method finds it by itself while I − C K_C stays positive on its way; elsewhere
@@ -141,6 +148,7 @@ def equilibrium(
         law: Elongation of every coordinate for given torques.
         point, force_point: (3,) measured point and point where the force acts, in the end frame
             [m]. The force acts at the measured point unless said otherwise.
+        follower: (..., 6) force and moment in axes of the end frame, at `force_point`, besides.
         soft: Indices of the coordinates that can yield under `law`; the others are not solved for.
             Default: all.
         weight: Lets the arm sag under its own weight, with and without load.
@@ -156,7 +164,7 @@ def equilibrium(
     start = np.broadcast_to(start, (*batch, start.shape[-1]))
     pick = np.arange(start.shape[-1]) if soft is None else soft
     loaded_point = point if force_point is None else force_point
-    statics = _Statics(mechanism, start, load, law, loaded_point, pick, weight)
+    statics = _Statics(mechanism, start, load, law, loaded_point, pick, weight, follower)
     full = np.ones(batch)
     begin = start if near is None else near
     z, trusted, state, steps = statics.newton(begin.copy(), full, full)
@@ -166,9 +174,11 @@ def equilibrium(
         raise _beyond(1.0)
     screws = state.screws if force_point is None else state.screws.at(_given(point))
     compliance = np.broadcast_to(state.compliance, (*z.shape, z.shape[-1]))
+    following = None if follower is None else rotate(screws.rotation, follower)
     return Equilibrium(
-        z, screws, state.torques, compliance, state.weights, state.screws, load, weight, steps
-    )
+        z, screws, state.torques, compliance, state.weights, state.screws,
+        load if following is None else load + following, following, weight, steps,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,17 +208,21 @@ class _Statics:
     point: Array | None
     pick: Index
     weight: Weight | None
+    follower: Array | None
 
     def at(self, z: Array, loaded: Array, hung: Array) -> _State:
         """The state at z under shares (...,) of the load and of the weight."""
         share, heavy = loaded[..., None], hung[..., None]
-        load = self.load * share
+        load, following = self.load * share, None
         screws = self.mechanism.screws(z, self.point)
+        if self.follower is not None:
+            following = rotate(screws.rotation, self.follower) * share
+            load = load + following
         torques = screws.torques(load)
         elongation, compliance = self.law(torques)
         yielding = screws.alone(self.pick)
         own = (..., self.pick[:, None], self.pick)
-        feedback = compliance[own] @ complementary_stiffness(yielding, load)
+        feedback = compliance[own] @ _load_stiffness(yielding, load, following)
         weights = np.zeros_like(torques)
         if self.weight is not None:
             sag, gravity = self.weight.compliance, self.weight.gravity
@@ -252,6 +266,14 @@ class _Statics:
                 break
             z[..., pick] -= change * np.minimum(1.0, LONGEST_STEP / np.maximum(largest, 1e-300))
         return z, good, state, step
+
+
+def _load_stiffness(
+    screws: Screws, load: Array, following: Array | None, rows: Index | None = None
+) -> Array:
+    """∂(Jᵀ W)/∂z (..., r, n) of a load a part of which turns with the end frame."""
+    K = complementary_stiffness(screws, load, rows)
+    return K if following is None else K + follower_stiffness(screws, following, rows)
 
 
 def _followed(statics: _Statics, found: Array, trusted: Mask) -> Array:

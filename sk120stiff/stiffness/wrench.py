@@ -10,10 +10,10 @@ from sk120stiff.errors import InputError
 
 
 def rotate(rotation: Array, wrench: Array) -> Array:
-    """(N, 6) wrenches with force and moment turned by (N, 3, 3)."""
-    force = np.einsum("nij,nj->ni", rotation, wrench[:, :3])
-    moment = np.einsum("nij,nj->ni", rotation, wrench[:, 3:])
-    return np.concatenate([force, moment], axis=1)
+    """(..., 6) wrenches with force and moment turned by (..., 3, 3)."""
+    force = np.einsum("...ij,...j->...i", rotation, wrench[..., :3])
+    moment = np.einsum("...ij,...j->...i", rotation, wrench[..., 3:])
+    return np.concatenate([force, moment], axis=-1)
 
 
 def wrenches(wrench: ArrayLike, count: int) -> Array:

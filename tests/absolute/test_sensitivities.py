@@ -60,10 +60,14 @@ def apart(one: PoseReading, other: PoseReading) -> Array:
     return np.concatenate([one.position - other.position, rotation_vector(turned)], axis=1)
 
 
+@pytest.mark.parametrize("follows", [False, True])
 @pytest.mark.parametrize("name", [*ARMS, *LOOPED])
-def test_all_effects_together(name: str) -> None:
+def test_all_effects_together(name: str, follows: bool) -> None:
     robot = arm(name)
     load_cases, (model, values) = load_cases_of(robot, 2), with_everything(robot, 3)
+    if follows:  # a sensor on the tool reads a force, and a mass hangs there besides
+        load_cases = replace(load_cases, follows=True, payload=np.arange(8.0))
+        load_cases = replace(load_cases, wrench=load_cases.wrench + load_cases.hanging)
     exact = read_poses(model, load_cases, values, derivative=True).columns
     typical = np.array([p.spec.typical for p in model.parameters])
     rng = np.random.default_rng(4)

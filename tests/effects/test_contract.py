@@ -81,10 +81,12 @@ def assert_same_columns(model: Model, exact: Array, differences: Array, first: i
         assert error <= 2e-7 * size + floor, (model.names[first + k], error / size)
 
 
+@pytest.mark.parametrize("follows", [False, True])
 @pytest.mark.parametrize("name", [*ARMS, *LOOPED])
-def test_sensitivities_of_all_effects_together(name):
+def test_sensitivities_of_all_effects_together(name, follows):
     """Along random directions in the space of all parameters, each of usual size."""
-    model, load_cases = with_every_effect(arm(name)), readings(arm(name), 6)
+    model = with_every_effect(arm(name))
+    load_cases = replace(readings(arm(name), 6), follows=follows)
     predicted, exact = model.predict_with_sensitivities(load_cases)
     assert np.allclose(predicted, model.predict(load_cases), rtol=0, atol=1e-14)
     typical = np.array([parameter.spec.typical for parameter in model.parameters])
