@@ -20,4 +20,8 @@ OF_LOADS: tuple[Fault, ...] = (
         "model/sensitivities.py", *tests("absolute", "sensitivities"),
         errors_of_a_sensor_along_the_unloaded_tool=("(loaded.rotation, load.of_follower)", "(load_cases.rotation, load.of_follower)"),
     ),
+    *of(
+        "identify/checks/tool_axes.py", *tests("identify", "tool_axes"),
+        axes_of_joint_angles_for_a_sensor=("share = float(own @ left) / size", "share = 1.0"),
+    ),
 )  # fmt: skip

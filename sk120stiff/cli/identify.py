@@ -31,6 +31,7 @@ from sk120stiff.identify import (
     Compared,
     Fit,
     HeldOut,
+    axes_of_joint_angles,
     compare,
     contradiction,
     fit,
@@ -122,9 +123,9 @@ def command(
         found = fit(start, readings, method=method.value, robust=robust, fix=fix or (), waves=waves)
     if isinstance(found, Calibration):
         return calibration_answer(found, readings, data, out)
-    wrong = contradiction(found)
-    if wrong is not None:
-        warn(wrong)
+    for doubt in (contradiction(found), axes_of_joint_angles(found)):
+        if doubt is not None:
+            warn(doubt)
     intervals: Sequence[Interval] | None = None
     if profile:
         with progress_bar("profile") as report:

@@ -42,7 +42,7 @@ from sk120stiff.explain.select.best_selection import (
 )
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
-from sk120stiff.identify import Fit, as_seen, refuse_unusable
+from sk120stiff.identify import Fit, as_seen, axes_of_joint_angles, refuse_unusable
 from sk120stiff.measurements import Measurements, NoiseModel, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
@@ -151,6 +151,7 @@ def explain_displacements(
         remainder = replace(remainder, goes_with=replace(account.goes_with(), foretold=foretold))
     if remainder.significant:
         remainder = replace(remainder, shows=(*remainder.shows, *left.of_time))
+    turned = axes_of_joint_angles(base)
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
@@ -167,6 +168,7 @@ def explain_displacements(
         adequacy=left,
         remainder=remainder,
         unnamed=(
+            *([] if turned is None else [turned]),
             *replace(named, findings=findings).reasons,
             *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),

@@ -12,6 +12,7 @@ from sk120stiff.identify.checks.held_out import (
 )
 from sk120stiff.identify.checks.lack_of_fit import DOUBTFUL, LackOfFit, lack_of_fit
 from sk120stiff.identify.checks.null_space import known_together, weak_directions
+from sk120stiff.identify.checks.tool_axes import axes_of_joint_angles
 from sk120stiff.identify.checks.unseen import unseen_reasons, unseen_sentences, why_unseen
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
 from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
@@ -33,6 +34,7 @@ __all__ = [
     "Problem",
     "Yardstick",
     "as_seen",
+    "axes_of_joint_angles",
     "compare",
     "contradiction",
     "drawn_parts",
