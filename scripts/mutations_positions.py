@@ -12,8 +12,16 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "identify/absolute/force_axes.py", *tests("absolute", "force_axes"),
         forces_never_negated=("for sign in (1.0, -1.0)", "for sign in (1.0,)"),
-        forces_that_turn_the_other_way=("np.sin(turn) * (sine - weight)", "-np.sin(turn) * (sine - weight)"),
+        forces_that_turn_the_other_way=('("z", angle, degrees=True).as_matrix()', '("z", -angle, degrees=True).as_matrix()'),
         other_axes_as_good_as_any=("AS_GOOD * least", "np.inf * least"),
+    ),
+    *of(
+        "identify/absolute/force_axes.py", *tests("absolute", "gauges"),
+        columns_exchanged_the_other_way=("sensor @ columns @ sensor.T", "sensor @ columns.T @ sensor.T"),
+    ),
+    *of(
+        "identify/absolute/model_form.py", *tests("absolute", "gauges"),
+        a_smooth_error_of_what_does_not_yield=("    if not products:", "    if False:"),
     ),
     *of(
         "identify/absolute/not_named.py", *tests("absolute", "not_named"),

@@ -158,8 +158,9 @@ class Explained:
         if self.springs is None:
             return ()
         more = f"{two_digits(100 * self.springs)} % more" if self.springs > 0.0 else "nothing more"
+        under = "these loads" if self.displaced else "the arm's weight"
         return (
-            f"Springs in all joints under the arm's weight would take {more} off the gap at poses "
+            f"Springs in all joints under {under} would take {more} off the gap at poses "
             "left out: they are not named.",
         )
 

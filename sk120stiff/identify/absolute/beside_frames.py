@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import nnls
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Effect, Elastic
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.joint_springs import JointSprings
@@ -58,6 +58,11 @@ def without_springs(model: Model) -> Model:
     return model
 
 
+def _of_springs(model: Model) -> Mask:
+    """(P,) parameters that are compliances of drives."""
+    return np.array([isinstance(p.effect, JointSprings) for p in model.parameters], dtype=np.bool_)
+
+
 def beside_frames(
     found: Calibration,
     loads: Sequence[Callable[[PoseProblem], PoseProblem]],
@@ -77,18 +82,21 @@ def beside_frames(
         [kind.at(robot, where, Options()) for kind in kinds for where in kind.places(robot)]
         for kinds in ((JointFrame, TransmissionError), (JointSprings,))
     )
+    bare = model
     for effect in (*(each for each in beside if each.id not in present), *springs):
         model = model + effect
-    own = np.array([isinstance(p.effect, JointSprings) for p in model.parameters])
+        bare = bare + effect if effect in springs else bare
     problem = replace(found.problem, model=model)
+    lean = replace(found.problem, model=bare)
 
     def columns(problem: PoseProblem) -> tuple[Array, Array]:
         gap, slope = problem.channel_gap(problem.model.values, derivative=True)
         return np.asarray(white(gap)), np.asarray(white(slope))
 
     gap, slope = columns(problem)
-    Q = orthonormal(slope[:, ~own], ROUNDING)
-    parts = [columns(otherwise(problem))[1][:, own] for otherwise in loads]
+    Q = orthonormal(slope[:, ~_of_springs(model)], ROUNDING)
+    own = _of_springs(bare)
+    parts = [columns(otherwise(lean))[1][:, own] for otherwise in loads]
     further = slopes(problem, model, causes)
     blocks = [white(further[cause]) for cause in causes]
     whole = np.column_stack([*parts, *blocks, gap])

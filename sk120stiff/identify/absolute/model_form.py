@@ -76,6 +76,8 @@ def model_form(found: Fit) -> ModelForm | None:
     products = {k: way @ way.T for k, way in enumerate(ways) if way.any()}
     if len(np.unique(cell)) < len(cell):
         products[len(ways)] = blind.T @ same @ blind
+    if not products:  # nothing yields that a smooth error could be of
+        return None
     if len(y) > CHEAP and not _shows([*products.values()], y):
         return None
     logs, gained = _likeliest([*products.values()], y, stated=found.sigma_known)
