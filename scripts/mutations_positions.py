@@ -24,6 +24,12 @@ OF_POSITIONS: tuple[Fault, ...] = (
         a_smooth_error_of_what_does_not_yield=("    if not products:", "    if False:"),
     ),
     *of(
+        "measurements/placing_levels.py", *tests("absolute", "levels"),
+        gravity_the_other_way=("np.linalg.lstsq(A, -levels.sine", "np.linalg.lstsq(A, levels.sine"),
+        one_wild_level_is_a_slip=("int((1.0 - WILD) * len(values))", "len(values)"),
+        levels_exchanged_the_other_way=("LEVELS[order.index(k)]", "LEVELS[order[k]]"),
+    ),
+    *of(
         "identify/absolute/not_named.py", *tests("absolute", "not_named"),
         springs_without_a_name_are_rigid=("more = len(problem.free) - len(found.x)\n", "return found\n"),
     ),

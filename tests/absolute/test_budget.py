@@ -44,7 +44,7 @@ def test_sag_of_each_joint(tmp_path: Path) -> None:
 def test_angles_alone_have_none(tmp_path: Path) -> None:
     a = poses(40, 3)
     _, axes = errors(2).stands(a)
-    level = -np.degrees(np.arcsin(axes[:, 2, 0]))
+    level = np.degrees(np.arcsin(axes[:, 2, 0]))
     cells = [f"{v:.9f},1,0,0" for v in level]
     path = write(tmp_path, a, np.full((40, 3), np.nan), "", more=",inc[deg],vx,vy,vz", cells=cells)
     text = path.read_text()

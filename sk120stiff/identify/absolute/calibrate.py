@@ -36,6 +36,7 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.measurements.placing import Placing, place
+from sk120stiff.measurements.placing_levels import refuse_other_levels
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
 from sk120stiff.measurements.turned import targets_on_tool
 from sk120stiff.model import Model, counted_from
@@ -150,6 +151,7 @@ def calibrate(
     model = model.under(readings.gravity)
     sizes = doubtful_sizes(model.robot, readings)
     placed = place(model.robot, readings)
+    refuse_other_levels(model.robot, readings)
     mounted, turns = None, tuple[str, ...]()
     if placed is not None or said.frame == "base":
         turn = np.zeros((1, 3)) if placed is None or said.frame == "base" else placed.turn
