@@ -35,7 +35,9 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/absolute/balancer.py", *tests("absolute", "balancer"),
-        any_wave_is_a_balancer=("_wave(effect, final) < NO_GEAR", "_wave(effect, final) < 0.0"),
+        any_wave_is_a_balancer=("chance_of_gear(*_wave(effect, final)) >= SURE", "chance_of_gear(*_wave(effect, final)) >= 2.0"),
+        a_balancer_that_needs_no_telling=("item.gain, (name,))", "item.gain)"),
+        balancers_as_usual_as_gears=("BALANCED = USUAL", "BALANCED = 1.0 - USUAL"),
     ),
     *of(
         "explain/absolute/choose.py", *POSITIONS,
@@ -253,7 +255,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/absolute/explained.py", *tests("absolute", "advice"),
-        one_of_a_class_left_open=("return not self.others and self.probability >= SURE", "return not self.alternatives and self.probability >= SURE"),
+        one_of_a_class_left_open=("return not self.others and not self.untold", "return not self.alternatives and not self.untold"),
     ),
     *of(
         "identify/absolute/creeping.py", *tests("absolute", "creeping"),

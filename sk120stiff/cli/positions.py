@@ -62,10 +62,9 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             f"({answer.chance_of(item)}, takes off {100 * item.gain.share:.1f} %)"
         )
         for other in item.alternatives:
-            share = likely(answer.probabilities.get(other, 0.0))  # of one class nothing tells it
-            shown.append(
-                f"  or {other} ({item.kind_of(other)}{'' if other in item.exact else f'; {share}'})"
-            )
+            share = likely(answer.probabilities.get(other, 0.0))
+            one = other in item.exact and other not in item.untold  # of one class nothing tells it
+            shown.append(f"  or {other} ({item.kind_of(other)}{'' if one else f'; {share}'})")
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
     whole = np.isfinite(answer.steps[-1].heldout_distance)

@@ -38,6 +38,8 @@ class Named:
         exact: Those of the alternatives that explain as much at every pose.
         probability: Of the effect or one of its alternatives.
         gain: What it takes off at poses left out.
+        untold: Those of the exact ones that are another thing to mend, and that something else than
+            such readings tells from it.
     """
 
     effect: Effect
@@ -45,6 +47,7 @@ class Named:
     exact: tuple[str, ...]
     probability: float
     gain: Gain
+    untold: tuple[str, ...] = ()
 
     @property
     def others(self) -> tuple[str, ...]:
@@ -52,12 +55,19 @@ class Named:
         return tuple(name for name in self.alternatives if name not in self.exact)
 
     @property
+    def same(self) -> tuple[str, ...]:
+        """Alternatives that nothing tells from it."""
+        return tuple(name for name in self.exact if name not in self.untold)
+
+    @property
     def settled(self) -> bool:
-        """One name, or one class of names, is sure enough; no further poses could tell more."""
-        return not self.others and self.probability >= SURE
+        """One name, or one class of names, is sure enough, and nothing could tell more."""
+        return not self.others and not self.untold and self.probability >= SURE
 
     def kind_of(self, other: str) -> str:
         """Why one of the alternatives stands beside the name, in words."""
+        if other in self.untold:
+            return "no pose tells them apart"
         return "always the same" if other in self.exact else "not told apart here"
 
 
@@ -147,9 +157,9 @@ class Explained:
 
     def chance_of(self, item: Named) -> str:
         """How probable a name is, and where others explain as much how probable one of them is."""
-        if not item.others:
+        if not item.others and not item.untold:
             return likely(item.probability)
-        same = (item.effect.id, *item.exact)
+        same = (item.effect.id, *item.same)
         own = likely(sum(self.probabilities.get(name, 0.0) for name in same))
         return f"{own}; it or one of those not told from it: {likely(item.probability)}"
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sk120stiff.explain.absolute.balancer import tell_apart
+from sk120stiff.explain.absolute.explained import SURE
 from sk120stiff.explain.findings import likely
 from sk120stiff.identify.absolute.repeated import pure_error
 
@@ -76,8 +78,9 @@ def next_step_of_positions(answer: Explained) -> str:
                 f"Measure the readings of next_poses.csv, append them to the file and run this "
                 f"again: they tell {one} from {other}. Until then either name foretells alike."
             )
-        else:
+        elif any(item.others or item.probability < SURE for item in answer.findings):
             said.append("Take each open name as one of its class; readings of other kinds tell it.")
+        said += tell_apart(answer.findings)
     if answer.verdict == "outside":
         said.append(
             "Trust it no farther than poses like those measured: more is left than the noise makes."

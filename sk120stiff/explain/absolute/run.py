@@ -19,7 +19,7 @@ from sk120stiff.explain.absolute.accounts import (
     suspects_of,
 )
 from sk120stiff.explain.absolute.advice import detectable, probabilities
-from sk120stiff.explain.absolute.balancer import balancer_for, balancing
+from sk120stiff.explain.absolute.balancer import balancing, or_balancer, shared
 from sk120stiff.explain.absolute.candidates import linear_at
 from sk120stiff.explain.absolute.changed import changed
 from sk120stiff.explain.absolute.choose import (
@@ -174,7 +174,7 @@ def explain_positions(
         guess=guess,
         where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
-        probabilities=probabilities(linear, found),
+        probabilities=shared(probabilities(linear, found), named, final),
         following=following,
         readings=readings,
         heldout=None if holdout is None else heldout_on(final, holdout.with_joints(*joints)),
@@ -285,10 +285,8 @@ def _named(
         others = [candidates[c] for c in own]
         exact = never_told(final, there, candidates[e], others) if there and others else ()
         ids = tuple(other.id for other in others)
-        balancer = balancer_for(candidates[e], final)
-        if balancer is not None and balancer not in ids:
-            ids, exact = (*ids, balancer), (*exact, balancer)
-        named.append(Named(candidates[e], ids, exact, probability, gain(linear, found.order, e)))
+        item = Named(candidates[e], ids, exact, probability, gain(linear, found.order, e))
+        named.append(or_balancer(item, final))
         pairs += [(candidates[e], other) for other in others if other.id not in exact][:1]
     following = None if there is None else next_poses(final, there, pairs)
     return tuple(named), following

@@ -64,7 +64,8 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         f"{answer.chance_of(item)}; takes off {100 * item.gain.share:.1f} % of the held-out gap "
         "beside the others."
         + (f" Not told from: {', '.join(item.others)}." if item.others else "")
-        + (f" Always the same in such readings: {', '.join(item.exact)}." if item.exact else "")
+        + (f" By no pose told from: {', '.join(item.untold)}." if item.untold else "")
+        + (f" Always the same in such readings: {', '.join(same)}." if (same := item.same) else "")
         for item in answer.findings
     ]
     held = [] if answer.heldout is None else [answer.heldout.sentence(answer.final.problem)]
