@@ -161,13 +161,27 @@ OF_POSITIONS: tuple[Fault, ...] = (
         wild_rows_pull_the_tracker=("near = far <= max(FAR * float(np.median(far)), 1e-9)", "near = far <= 1e9"),
     ),
     *of(
-        "identify/absolute/pushed.py", *tests("absolute", "pushed"),
-        creeping_taken_for_a_push=("if after <= HALF * min(before, self._left([], creeping=[self.time])):", "if after <= HALF * before:"),
+        "identify/absolute/pushed.py", *tests("absolute", "joint_slips"),
+        a_slip_where_a_label_says_there_is_none=("or problem.said.series is None)", "or True)"),
+        a_law_of_the_joint_taken_for_a_slip=("<= CLEARER * steps.by_places", "<= 0.0"),
+    ),
+    *of(
+        "identify/absolute/steps.py", *tests("absolute", "joint_slips"),
+        stairs_of_a_drift_taken_for_slips=("courses if len(cuts) > 1 else", "courses if len(cuts) > 9 else"),
+        the_joint_that_takes_off_least=("int(np.argmax([replace", "int(np.argmin([replace"),
+        sizes_of_what_does_not_slip=("[-len(cuts) * self.frame.shape[1] :]", "[: len(cuts) * self.frame.shape[1]]"),
+    ),
+    *of(
+        "identify/absolute/steps.py", *tests("absolute", "pushed"),
+        creeping_taken_for_a_push=("if after <= HALF * min(before, steady):", "if after <= HALF * before:"),
         a_push_for_a_little=("HALF = 0.5", "HALF = 0.99"),
+        borders_in_the_joints_taken_for_a_push=("> CLEARER * self.by_places", "> 0.0"),
+        a_place_from_the_first_row_on=("self.frame * (self.when >= cut)[:, None] for cut in cuts", "self.frame * (self.when >= 0)[:, None] for cut in cuts"),
+    ),
+    *of(
+        "identify/absolute/pushed.py", *tests("absolute", "pushed"),
         a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
         pushes_in_the_order_of_the_file=("rows = np.arange(readings.n_readings) if clock is None else clock", "rows = np.arange(readings.n_readings)"),
-        borders_in_the_joints_taken_for_a_push=("> CLEARER * self._by_places()", "> 0.0"),
-        a_place_from_the_first_row_on=("self.frame * (self.when >= cut)[:, None] for cut in cuts", "self.frame * (self.when >= 0)[:, None] for cut in cuts"),
     ),
     *of(
         "measurements/importers/stations.py", *tests("measurements/importers", "several_files"),
