@@ -59,7 +59,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     for item in answer.findings:
         shown.append(
             f"{sentence_in(answer.final.model, item.effect)} [{item.effect.id}] "
-            f"({answer.chance_of(item)}, takes off {100 * item.gain.share:.1f} %)"
+            f"({answer.chance_of(item)}, {answer.taken_off(item)})"
         )
         for other in item.alternatives:
             share = likely(answer.probabilities.get(other, 0.0))
@@ -67,6 +67,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             shown.append(f"  or {other} ({item.kind_of(other)}{'' if one else f'; {share}'})")
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
+    shown += answer.shares()
     whole = np.isfinite(answer.steps[-1].heldout_distance)
     rows = [
         (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)[: 3 + whole]

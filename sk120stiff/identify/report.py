@@ -104,7 +104,7 @@ def noise_sentence(fit: Fit) -> str:
     said = noise.sentence()
     if noise.sigma is None and fit.degrees_of_freedom > 0:
         said += f" If the model were true, it would be {model.sigma * 1e6:.3g} µm for one reading."
-    return f"{said} {model.of_growth_and_zero()}"
+    return f"{said} {model.of_growth_and_zero(fit.problem.measurements)}"
 
 
 def _down_weighted(fit: Fit) -> list[str]:

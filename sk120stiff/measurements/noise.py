@@ -202,8 +202,11 @@ class NoiseModel:
         full[:, each, each] += own.T
         return full
 
-    def of_growth_and_zero(self) -> str:
+    def of_growth_and_zero(self, measurements: Measurements | None = None) -> str:
         """What the model holds beside the size of sigma, in plain words.
+
+        Args:
+            measurements: Those that it is of; no two rows may subtract one zero reading there.
 
         Examples:
             >>> import sk120stiff as sk
@@ -213,7 +216,8 @@ class NoiseModel:
         said = ""
         if self.growth > 0:
             said = f"The loaded one has {self.growth * 100:.3g} % of its displacement besides. "
-        if self.zero == "shared":
+        group = np.zeros(2) if measurements is None else measurements.zero_group
+        if self.zero == "shared" and len(np.unique(group)) < len(group):
             return f"{said}Rows that subtract the same zero reading share its error."
         return f"{said}Each row subtracts a zero reading of its own, so rows err independently."
 

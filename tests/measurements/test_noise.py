@@ -268,6 +268,13 @@ def test_models_speak_plainly() -> None:
     assert "independent" in NoiseModel(SIGMA, zero="separate").of_growth_and_zero()
 
 
+def test_rows_that_each_subtract_a_zero_of_their_own_share_none() -> None:
+    shared = NoiseModel(SIGMA, zero="shared")
+    assert "share its error" in shared.of_growth_and_zero(make(["a", "a", "b"]))
+    apart = make(["a", "a", "b"], zero_group=np.arange(3))
+    assert "a zero reading of its own" in shared.of_growth_and_zero(apart)
+
+
 def test_scaling_scales_the_covariance() -> None:
     m = make(MIXED, zero_count=COUNTS)
     model = NoiseModel(SIGMA, 0.02)

@@ -19,6 +19,7 @@ from sk120stiff.explain.absolute.other_poses import NextPoses
 from sk120stiff.explain.findings import Contender, Detectable, likely
 from sk120stiff.identify import Calibration
 from sk120stiff.identify.absolute.remainder import LEVEL, Size, remainder_sentences
+from sk120stiff.identify.absolute.words import unseen
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Share
 
@@ -162,6 +163,27 @@ class Explained:
         same = (item.effect.id, *item.same)
         own = likely(sum(self.probabilities.get(name, 0.0) for name in same))
         return f"{own}; it or one of those not told from it: {likely(item.probability)}"
+
+    def taken_off(self, item: Named, of: str = "") -> str:
+        """What a name takes off the gap at poses left out, `of` behind it, in words."""
+        hidden = unseen(self.final)
+        held = zip(self.final.parameters, self.final.at_bound, strict=True)
+        own = [(p.name in hidden, bool(at)) for p, at in held if p.effect == item.effect]
+        said = f"takes off {100 * item.gain.share:.1f} %{of}"
+        if own and all(unknown for unknown, _ in own):
+            return f"{said} together with errors of geometry, from which its size is not told"
+        if own and all(at for _, at in own):
+            return f"alone {said}; beside the others its value comes out as nothing"
+        return said
+
+    def shares(self) -> tuple[str, ...]:
+        """Why shares of several names add up to more than all, in a sentence."""
+        if sum(item.gain.share for item in self.findings) <= 1.0:
+            return ()
+        return (
+            "Each share is of the gap that all other names leave without that one, so they add up "
+            "to more than 100 %.",
+        )
 
     def weight(self) -> tuple[str, ...]:
         """What the arm's weight would explain where no spring is named, in a sentence."""

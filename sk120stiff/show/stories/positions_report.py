@@ -61,8 +61,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     )
     named = [
         f"{sentence_in(answer.final.model, item.effect)} (`{item.effect.id}`) "
-        f"{answer.chance_of(item)}; takes off {100 * item.gain.share:.1f} % of the held-out gap "
-        "beside the others."
+        f"{answer.chance_of(item)}; {answer.taken_off(item, ' of the held-out gap')}."
         + (f" Not told from: {', '.join(item.others)}." if item.others else "")
         + (f" By no pose told from: {', '.join(item.untold)}." if item.untold else "")
         + (f" Always the same in such readings: {', '.join(same)}." if (same := item.same) else "")
@@ -79,6 +78,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
                 [
                     figures,
                     Items(named or ["No cause is named."], ordered=bool(named)),
+                    *map(Note, answer.shares()),
                     Note(next_step_of_positions(answer), "note", "What to do now"),
                 ],
             ),
