@@ -96,11 +96,11 @@ def measurement_table(
     case: Case, rows: Rows, positions: bool, units: dict[str, str], rng: np.random.Generator
 ) -> tuple[list[str], list[list[object]]]:
     """Header and rows of the CSV, noise drawn."""
-    displacement, start, _ = case.world.observe(rows)
+    displacement, start, loaded = case.world.observe(rows)
     error, zero_error = case.noise.sample(rows, displacement, start, rng)
     force, moment = rows.force, rows.moment
     if case.force_frame == "tool":
-        turned = nominal_tool_rotation(case, rows)
+        turned = loaded.standing.tool_rotation  # as a sensor reads that is screwed to the tool
         force = np.einsum("nji,nj->ni", turned, force)
         moment = np.einsum("nji,nj->ni", turned, moment)
     with_moment = bool(np.any(moment))
