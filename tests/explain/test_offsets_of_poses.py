@@ -1,6 +1,7 @@
 """Zero readings that are off: named though σ was understated, and told from a sensor's bias."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -88,6 +89,13 @@ def test_what_shows_at_no_other_poses_is_called_no_alias() -> None:
     typical = [spec.typical for spec in drift.parameters]
     drifting = (model + drift).with_values(np.array([*model.values, *typical]))
     assert exact_aliases(drifting, drift, [tilt], point=np.array([0.0, 0.1, 0.2])) == ()
+
+
+def test_a_saved_model_knows_its_readings(springs: Model, tmp_path: Path) -> None:
+    """Whoever saves an answer from Python need not say so."""
+    readings = replace(hidden(), data_hash="a")
+    answered(springs, readings).save(tmp_path)
+    assert sk.read_model(tmp_path / "model.yaml").provenance["data_hash"] == "sha256:a"
 
 
 def test_offsets_are_those_of_the_file_they_were_found_in(springs: Model) -> None:

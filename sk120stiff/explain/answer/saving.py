@@ -46,12 +46,16 @@ def save(
     *,
     provenance: Mapping[str, str] | None = None,
 ) -> dict[str, object]:
-    """Write what was found, all in one moment; see `Explanation.save`."""
-    out = Path(folder)
+    """Write what was found, all in one moment; see `Explanation.save`.
+
+    The model's file tells in any case which readings it is of: offsets of their zeros are theirs.
+    """
+    out, digest = Path(folder), answer.readings.data_hash
+    own = {"data_hash": f"sha256:{digest}"} if digest else {}
     following = None if answer.next_poses is None else NEXT_POSES
     document = {"schema": SCHEMA, **verdict_document(answer, answer.readings, following)}
     fitted = replace(
-        known_model(answer.final, answer.remainder.left), provenance=dict(provenance or {})
+        known_model(answer.final, answer.remainder.left), provenance=own | dict(provenance or {})
     )
     gaps = _gaps(fitted, answer.readings)
     with replacing_results(out):
