@@ -1,7 +1,8 @@
 """The selection that explains most, and what it is held against.
 
 What was stated of the noise, or found from repeats, stays the yardstick of every fit, whatever
-else a search took into account (`beside_form.py`).
+else a search took into account (`beside_form.py`). Where nothing was, noise that grows with the
+displacement is held against causes of the gap: what a selection leaves over says how much.
 
 A gap that is rounding, because the readings were computed, has no cause: the search is made again
 with the finest noise that instruments have, and finds none.
@@ -18,7 +19,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
 from sk120stiff.identify.solving import widened_as
-from sk120stiff.measurements import Measurements, NoiseModel, candidates
+from sk120stiff.measurements import Measurements, NoiseModel, candidates, growing
 from sk120stiff.measurements.noise import FINEST
 
 
@@ -39,6 +40,11 @@ def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, N
     """
     tried = [under(noise) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]
+    grown = growing(found.base.problem.noise, found.final.problem.measurements, found.final.gap)
+    if grown is not None:
+        again = under(grown)
+        one_number_more = float(np.log(measurements.read.sum()))
+        found = (found, again)[likelier([-found.total, -again.total - one_number_more])]
     noise = found.base.problem.noise
     if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
