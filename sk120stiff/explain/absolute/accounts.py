@@ -77,17 +77,23 @@ def numbers_told(seen: Calibration, final: Calibration, readings: Measurements) 
 def steps_of(
     linear: Linear, found: Chosen, base: Calibration, seen: Calibration, inside: Index
 ) -> tuple[GapStep, ...]:
-    """The gap as one named cause after the other joins, over the numbers `inside`."""
-    metres = seen.problem.of_channels.undo
+    """The gap as one named cause after the other joins, over the numbers `inside`.
+
+    The registered arm comes first as plain least squares place it: what it leaves is no draw of
+    each pose, however large what the readings of a pose have in common is beside the causes.
+    """
+    white = seen.problem.of_channels
     whole = _whole(linear, seen) & np.isin(np.arange(len(linear.residual)), inside)
     first = " + ".join(base_labels(base)) or RIGID
     labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
     steps = []
     for k, label in enumerate(labels):
         chosen = found.order[:k]
-        noise = linear.noise(chosen)
-        fitted = linear.gap(chosen, noise, held_out=False)
-        held = linear.gap(chosen, noise, held_out=True)
+        kind = white if k else replace(white, common=0.0)
+        metres, used = kind.undo, linear if k else linear.whitened(white, kind)
+        noise = used.noise(chosen)
+        fitted = used.gap(chosen, noise, held_out=False)
+        held = used.gap(chosen, noise, held_out=True)
         distance = lengths(metres(held), linear, whole)
         steps.append(
             GapStep(

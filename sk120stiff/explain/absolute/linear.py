@@ -15,6 +15,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect, Elastic, LoadError, Weighing
+from sk120stiff.identify.absolute.pose_errors import PoseWhitening
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +151,13 @@ class Linear:
                 for k, p in enumerate(self.slices)
             ),
         )
+
+    def whitened(self, before: PoseWhitening, after: PoseWhitening) -> Linear:
+        """The same numbers with other uncertainties."""
+        if before.common == after.common:
+            return self
+        arrays = {name: getattr(self, name) for name in ("residual", "base", "columns")}
+        return replace(self, **{k: after.apply(before.undo(each)) for k, each in arrays.items()})
 
     def values(self, chosen: tuple[int, ...], noise: float) -> dict[str, float]:
         """Internal value of every parameter of the chosen by its full name; what is rigid is 0."""

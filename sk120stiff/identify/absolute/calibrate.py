@@ -337,14 +337,17 @@ def refined(
 ) -> Calibration:
     """A calibration with further effects, fitted exactly; what cannot be told of them is frozen.
 
-    `near`: a model with much the same effects, from whose values to start.
+    Without any, and nothing that yields, what the readings of a pose have in common is not looked
+    for: it is the errors of the arm that was registered alone. `near`: a model with much the same
+    effects, from whose values to start.
     """
     model = base.model
+    shared = bool(effects) or any(isinstance(effect, Elastic) for effect in model.effects)
     for effect in effects:
         model = model + effect
     if near is not None:
         model = with_values_of(model, near)
-    found, frozen, wild = _fitted(model, readings, base.wild)
+    found, frozen, wild = _fitted(model, readings, base.wild, shared=shared)
     return Calibration.of(
         doubted(found, catalogue), placed=base.placed, frozen=frozen, still=base.still, wild=wild,
         waves=base.waves, notes=base.notes,

@@ -44,7 +44,7 @@ def learned(found: Fit) -> dict[str, float]:
 
 
 def common_of(found: Fit) -> Common:
-    """What the joints of a pose stand off by, in what a fit leaves."""
+    """What a pose has of its own, in what a fit leaves."""
     problem = of_poses(found)
     times = np.bincount(problem.load_cases.pose)
     if (times > 1).sum() < TWICE:

@@ -1,15 +1,15 @@
-"""What all readings of a pose have in common beyond the model: its joints are not where they read.
+"""What all readings of a pose have in common beyond the model: the tool is not where it should be.
 
 Gears and bearings put every pose off by something of its own, and whatever is read there shares it:
 three markers on the tool, the marker under one payload after the other. Taken for independent
 noise it makes the readings of a pose count several times, and hides what differs between them. So
-each joint of each pose stands off by a draw of its own, all of one size τ, and all that is read is
-shifted by one as large:
+the tool of each pose is shifted and turned by a draw of its own, every way alike, as far as joints
+shift and turn it that stand off by one size τ:
 
-    V = D (I + τ² Z_p Z_pᵀ) D  for every pose,   D = diag(σ),   Z_p = D⁻¹ [∂x/∂a, ℓ I]
+    V = D (I + τ² Z_p Z_pᵀ) D  for every pose,   D = diag(σ),   Z_p = D⁻¹ ∂x/∂(shift, turn)
 
-with x the readings, a the joints, ℓ their lever, and τ by restricted likelihood (Patterson &
-Thompson 1971). Where no pose was read twice the two cannot be told apart, and all is noise.
+with x the readings, and τ by restricted likelihood (Patterson & Thompson 1971). Where no pose was
+read twice the two cannot be told apart, and all is noise.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Array, Index, lengths_of
 
-RANGE = (-16.0, -4.0)  # ln of rad or m; joints stand off by 0.1 µrad to 20 mrad
+RANGE = (-16.0, -4.0)  # ln of rad or m; as joints that stand off by 0.1 µrad to 20 mrad
 NOTHING = -50.0  # the same of no error at all
 CLEAR = 10.83  # fall of -2 ln L, which noise alone brings in one case of 2000
 
@@ -112,7 +112,7 @@ def directions(white: Array, pose: Index) -> Iterator[tuple[Index, Array, Array]
 def common_error(
     gap: Array, derivative: Array, whitening: PoseWhitening, *, stated: bool
 ) -> Common:
-    """How far the joints of a pose stand off.
+    """How far the tool is off at a pose, in offsets of joints.
 
     Args:
         gap: (M,) what a fit leaves [m or rad].

@@ -20,8 +20,8 @@ from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Channels, Measurements
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import ANGLES, OF_AXES, inclined
-from sk120stiff.model import Parameter
-from sk120stiff.model.pose_reading import move_by_load, read_poses
+from sk120stiff.model import Model, Parameter
+from sk120stiff.model.pose_reading import instrument_frames, move_by_load, read_poses
 
 ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
 
@@ -43,8 +43,8 @@ class PoseProblem(Problem):
 
     Attributes:
         sigma: Standard uncertainty of each kind of channel that did not state its own [m or rad].
-        common: Standard size of what each joint of a pose stands off by [rad or m], see
-            `pose_errors.py`; 0: nothing.
+        common: Standard size of what a pose has of its own, as joints that stand off by as much
+            [rad or m], see `pose_errors.py`; 0: nothing.
     """
 
     sigma: Mapping[str, float] = field(default_factory=dict)
@@ -116,21 +116,38 @@ class PoseProblem(Problem):
 
     @cached_property
     def by_pose(self) -> Array:
-        """(M, k) what may be a pose's own: an offset of each joint, and a shift of what is read.
+        """(M, 6) what may be a pose's own: its tool is shifted and turned, every way alike.
 
-        The shift is as large as joints make it, whatever they are: what bends behind them, or the
-        instrument's, turns nothing. Of what a load does alone, each joint yields otherwise.
+        As large as joints make it that stand off by one each. Offsets of the joints themselves
+        would let what all poses share, the wrong zero of a joint, pass for a draw of each: arms
+        were registered worse by it than by plain least squares. Of what a load does alone, each
+        joint yields otherwise.
         """
-        joints = self.by_joints
         if self.channels.displacements_alone:
-            return joints
-        shift = np.zeros((len(joints), 3))
-        for kind, part in zip(self.channels.present, self.channels.kinds, strict=True):
-            if kind == "position":
-                axis = np.nonzero(self.channels.held(kind))[1]
-                lever = float(np.sqrt((joints[part] ** 2).sum(axis=1).mean()))
-                shift[part] = lever * np.eye(3)[axis]
-        return np.concatenate([joints, shift], axis=1)
+            return self.by_joints
+        cases, channels = self.load_cases, self.channels
+        beside, offsets = self._with_offsets
+        seen = read_poses(beside, cases, beside.values, derivative=True)
+        each = np.sqrt((seen.columns[:, :, offsets] ** 2).sum(axis=2))  # (N, 6)
+        shift, turn = (float(np.sqrt(np.mean(part**2))) for part in (each[:, :3], each[:, 3:]))
+        R, origin = instrument_frames(beside, cases)
+        to_base = np.swapaxes(R, 1, 2)
+        marker = np.einsum("nij,nj->ni", to_base, seen.position - origin)
+        own = cases.pose[:, None] == np.unique(cases.pose)
+        about = (own @ (own.T @ marker / own.sum(axis=0)[:, None]))[:, None]
+        motion = np.zeros((cases.count, 6, 6))
+        motion[:, :3, :3] = shift * R
+        motion[:, :3, 3:] = (
+            turn * R @ np.swapaxes(np.cross(np.eye(3), marker[:, None] - about), 1, 2)
+        )
+        motion[:, 3:, 3:] = turn * R
+        moved = tilted = None
+        if channels.by_load:
+            still = move_by_load(self.model, cases, self.model.values)
+            moved = replace(still, columns=np.zeros_like(motion))
+        if channels.level is not None:
+            tilted = inclined(channels.level, seen.standing, to_base @ motion[:, 3:], self._down)
+        return channels.project(seen.position, seen.rotation, motion, moved, tilted)[1]
 
     @cached_property
     def by_joints(self) -> Array:
@@ -141,6 +158,13 @@ class PoseProblem(Problem):
         """
         if self.channels.displacements_alone:
             return self._by_springs
+        beside, offsets = self._with_offsets
+        slope = replace(self, model=beside, common=0.0).channel_gap(beside.values, derivative=True)
+        return np.asarray(slope[1][:, offsets])
+
+    @cached_property
+    def _with_offsets(self) -> tuple[Model, Index]:
+        """The model with an offset of every actuated joint, and where these stand."""
         model = self.model
         robot = model.robot
         own = {effect.id for effect in model.effects}
@@ -148,15 +172,14 @@ class PoseProblem(Problem):
             effect = JointOffset.at(robot, joint, Options())
             if effect.id not in own:
                 model = model + [Parameter(effect, spec, 0.0) for spec in effect.parameters]
-        slope = replace(self, model=model, common=0.0).channel_gap(model.values, derivative=True)[1]
-        columns = [
+        places = [
             next(
                 k for k, p in enumerate(model.parameters)
                 if p.effect.name == JointOffset.name and p.effect.where == joint
             )
             for joint in robot.actuated
         ]  # fmt: skip
-        return np.asarray(slope[:, columns])
+        return model, np.array(places, dtype=np.intp)
 
     @cached_property
     def _by_springs(self) -> Array:
