@@ -11,7 +11,7 @@ from sk120stiff.explain.absolute.choose import (
     SHARE,
     SURE,
     Gain,
-    _confirmed,
+    confirmed,
     _next,
     gain,
 )
@@ -112,8 +112,8 @@ def test_a_gain_is_what_the_gap_falls_by_at_poses_left_out():
         (Gain(2 * SHARE, 2 * SURE, 3), False),
     ],
 )
-def test_a_cause_is_confirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
-    assert _confirmed(gained, linear()) is sure
+def test_a_cause_isconfirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
+    assert confirmed(gained, linear()) is sure
 
 
 def test_a_cause_joins_by_more_evidence_the_more_were_looked_at():

@@ -83,7 +83,7 @@ def by_likeliest(linear: Linear, found: Chosen) -> Chosen:
         odds = {c: linear.score((*rest, c), noise) + usual(linear.candidates[c]) for c in others}
         best = max(others, key=lambda c: odds[c])
         other = tuple(best if c == e else c for c in chosen)
-        if odds[best] > odds[e] + MENTION and _confirmed(gain(linear, other, best), linear):
+        if odds[best] > odds[e] + MENTION and confirmed(gain(linear, other, best), linear):
             chosen = other
     return Chosen(chosen, found.dropped)
 
@@ -122,14 +122,14 @@ def _searched(linear: Linear, *, at_once: bool) -> tuple[tuple[int, ...], dict[i
         seen.add(frozenset(chosen))
         for e in best if at_once else ():
             gained = gain(linear, chosen, e) if e in chosen else None
-            if gained is not None and not _confirmed(gained, linear):
+            if gained is not None and not confirmed(gained, linear):
                 why = (
                     f"fits, but at poses left out it takes off no more than "
                     f"{100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard errors)."
                 )
                 chosen = _without(linear, chosen, e, why, dropped)
     for e in list(chosen):
-        if e in chosen and not _confirmed(gain(linear, chosen, e), linear):
+        if e in chosen and not confirmed(gain(linear, chosen, e), linear):
             chosen = _without(linear, chosen, e, "is not confirmed by poses left out.", dropped)
     return chosen, dropped
 
@@ -194,7 +194,7 @@ def _zeros(linear: Linear, chosen: tuple[int, ...], dropped: Set[int]) -> tuple[
         if best == e or others[best] < linear.score(chosen, noise):
             continue
         other = tuple(best if c == e else c for c in chosen)
-        if _confirmed(gain(linear, other, best), linear):
+        if confirmed(gain(linear, other, best), linear):
             chosen = other
     return chosen
 
@@ -275,7 +275,8 @@ def _plainer(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
     return chosen
 
 
-def _confirmed(gained: Gain, linear: Linear) -> bool:
+def confirmed(gained: Gain, linear: Linear) -> bool:
+    """Do poses left out bear a name out?"""
     return gained.share > SHARE and gained.errors > SURE and gained.folds >= min(4, linear.folds)
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.explain.absolute.choose import RIVAL, frames_of, usual
+from sk120stiff.explain.absolute.choose import RIVAL, confirmed, frames_of, gain, usual
 from sk120stiff.explain.absolute.linear import Linear
+from sk120stiff.explain.priors import FALLEN
 
 
 def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple[int, ...], float]:
@@ -30,7 +31,11 @@ def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float
 def _rivals(
     linear: Linear, chosen: tuple[int, ...], e: int
 ) -> tuple[tuple[int, ...], list[float], Array]:
-    """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing."""
+    """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing.
+
+    Evidence beyond that of the chosen one, which poses left out bear out, is no evidence where they
+    do not: few readings far from all others make as much.
+    """
     noise = linear.noise(chosen)
     rest = linear.less(chosen, e)
     nothing = linear.score(rest, noise)
@@ -48,6 +53,9 @@ def _rivals(
         if score + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
         and score > nothing
     )
+    for c in rivals:
+        if others[c] > own and not confirmed(gain(linear, (*rest, c), c), linear):
+            others[c] = own + float(np.log(FALLEN))
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
     prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
     weight = np.exp(scores - scores.max())
