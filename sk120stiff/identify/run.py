@@ -16,6 +16,7 @@ from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.lacking import beside_lacking
 from sk120stiff.identify.absolute.pushed import refuse_pushed
+from sk120stiff.identify.absolute.remounted import remounted
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import known_calibration
 from sk120stiff.identify.estimate import fit_displacements
@@ -86,7 +87,13 @@ def fit(
         told += refuse_pushed(calibrated, readings, *beside)
         found = beside_lacking(with_model_form(calibrated))
         return replace(
-            found, notes=(*told, *found.notes, *pounds(found), *creeping(found, readings))
+            found,
+            notes=(
+                *told,
+                *found.notes,
+                *pounds(found),
+                *(remounted(found, readings) or creeping(found, readings)),
+            ),
         )
     if not waves:
         raise InputError(

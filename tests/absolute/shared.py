@@ -17,15 +17,20 @@ PLACES = {"A": (0.05, -0.08, 0.12), "B": (-0.07, 0.05, 0.10), "C": (0.02, 0.09, 
 
 
 def campaign(
-    folder: Path, seed: int, count: int, *, loads: tuple[float, ...], markers: str, off: float = OFF
-) -> Measurements:
-    """Every marker under every payload at poses whose joints are not where encoders read."""
+    folder: Path, seed: int, count: int, *, loads: tuple[float, ...], markers: str,
+    off: float = OFF, moved: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Measurements:  # fmt: skip
+    """Every marker under every payload at poses whose joints are not where encoders read.
+
+    Under payloads beyond zero all markers sit elsewhere, by `moved` [m].
+    """
     a, rng, arm = poses(count, seed), np.random.default_rng(seed), errors(seed)
     q = a + off * rng.normal(size=a.shape)
     rows, cells, seen = [], [], []
     for load in loads:
         for name in markers:
-            at = replace(arm, marker=np.array(PLACES[name]), payload=load)
+            marker = np.array(PLACES[name]) + np.array(moved) * (load > 0.0)
+            at = replace(arm, marker=marker, payload=load)
             seen.append(tracked(at.stands(q)[0]))
             rows.append(a)
             cells += [f"{name},{load},p{k}" for k in range(len(a))]

@@ -11,8 +11,8 @@ from sk120stiff.explain.absolute.choose import (
     SHARE,
     SURE,
     Gain,
-    confirmed,
     _next,
+    confirmed,
     gain,
 )
 from sk120stiff.explain.absolute.linear import Linear

@@ -55,6 +55,7 @@ from sk120stiff.identify.absolute.remainder import (
     chance_of_noise,
     left_beyond_noise,
 )
+from sk120stiff.identify.absolute.remounted import remounted
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -139,7 +140,7 @@ def explain_positions(
             *pushed,
             *final.notes,
             *pounds(final),
-            *creeping(final, readings),
+            *(remounted(final) or creeping(final, readings)),
             *balancing(final),
             *changed(final, options.seed),
         ),

@@ -26,6 +26,7 @@ SPLITS = 400  # rows between which it is looked for first
 MOST = 4  # pushes of one campaign
 ENOUGH = 4  # times as many numbers to spare as a push would take up: fewer are fitted by anything
 WORTH = 0.05  # of the gap: a push that takes off less is not spoken of
+TAKEN = 0.85  # of the gap, below which a change at a known time is spoken of
 STURDY = 5.0  # times the odds against courses of time, since errors of a model go together
 CLEARER = 3.0  # times what a border in a joint's values takes off, which an error of a model may
 ROUNDING = 1e-10  # added to the squares of columns of length one, which may hold each other
@@ -104,6 +105,20 @@ class Steps:
         if told and before - after > CLEARER * self.by_places:
             return Change(tuple(cuts), share, False, odds, before - after)
         return Change()
+
+    def at(self, times: Sequence[int]) -> Change:
+        """What changes at times that are known take off, if that is beyond doubt beside a creep."""
+        cuts = list(times)
+        most = int(self.freedom / (ENOUGH * self.frame.shape[1]))
+        if not 0 < len(cuts) <= min(MOST, most):
+            return Change()
+        before, after = self._left([]), self._left(cuts)
+        steady = self._left([], creeping=[self.time])
+        odds = self._odds(min(before, steady), after, len(cuts))
+        share = float(np.sqrt(after / before))
+        if odds <= BEYOND_DOUBT or share > TAKEN:
+            return Change()
+        return Change(tuple(cuts), share, False, odds, before - after)
 
     @cached_property
     def by_places(self) -> float:

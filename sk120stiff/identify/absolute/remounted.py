@@ -1,0 +1,54 @@
+"""A marker that sits elsewhere on the tool once a payload was changed.
+
+Who hangs a payload touches the tool, and springs are told by what payloads do. Where the marker
+took another place with them, springs would stand for it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.effects.geometry import ToolOffset
+from sk120stiff.errors import listed
+from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.absolute.pushed import in_order
+from sk120stiff.identify.absolute.repeated import cells_of_numbers
+from sk120stiff.identify.absolute.steps import Steps
+
+
+def remounted(found: Calibration) -> list[str]:
+    """That the marker looks to have moved where the payload was changed, and what to write.
+
+    What drifts from row to row may look alike; the drift is held against it.
+
+    Args:
+        found: A calibration, all of its causes included.
+    """
+    problem = found.problem
+    said, measured = problem.said, problem.measurements
+    place = [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)]
+    if said.series is not None or not place or "position" not in problem.channels.present:
+        return []
+    when = in_order(measured)
+    order = np.argsort(when)
+    changes = (np.flatnonzero(np.diff(said.payload[order])) + 1).tolist()
+    own, known = found.jacobian[:, place], found.jacobian[:, ~found.at_bound]
+    rows = problem.rows
+    pose = cells_of_numbers(problem, measured.pose_index[:, None])
+    joints = measured.joints[rows]
+    steps = Steps(
+        known, np.zeros(known.shape[1]), found.residual, own, when[rows], joints, pose, own
+    )
+    change = steps.at(changes)
+    if not change.cuts:
+        return []
+    line = measured.line[order]
+    between = listed([f"{line[k - 1]} and {line[k]}" for k in changes])
+    sizes = steps.sizes(changes) * problem.scale[place]
+    moved = listed([f"{1e3 * np.linalg.norm(each):.2g} mm" for each in sizes])
+    return [
+        f"The marker looks moved on the tool (by {moved}) where the payload was changed, between "
+        f"lines {between}: with another place from there on the gap falls to "
+        f"{100.0 * change.share:.0f} % of it, and springs are others. Add a column series with a "
+        "label for each time between, as a and b, if it may have been; one label for all if not."
+    ]

@@ -1,0 +1,31 @@
+"""A marker that took another place on the tool when a payload was hung there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import sk120stiff as sk
+from sk120stiff.identify.absolute.calibrate import calibrate
+from sk120stiff.identify.absolute.remounted import remounted
+from sk120stiff.measurements import Measurements
+from tests.absolute.shared import campaign
+
+
+def told(m: Measurements) -> list[str]:
+    robot = sk.load_robot(m.robot, base="base", tool="tool")
+    return remounted(calibrate(sk.base_model(robot), m))
+
+
+@pytest.mark.parametrize("seed", [3, 7])
+def test_another_place_under_the_payload_is_told(tmp_path: Path, seed: int) -> None:
+    m = campaign(tmp_path, seed, 24, loads=(0.0, 30.0), markers="A", moved=(1e-3, 0.0, -5e-4))
+    (said,) = told(m)
+    assert "between lines 25 and 26" in said and "by 1.1 mm" in said and "column series" in said
+
+
+@pytest.mark.parametrize("seed", [3, 7, 11])
+def test_what_a_payload_does_to_the_arm_is_no_other_place(tmp_path: Path, seed: int) -> None:
+    assert not told(campaign(tmp_path, seed, 24, loads=(0.0, 30.0), markers="A"))
+    assert not told(campaign(tmp_path, seed, 12, loads=(0.0, 15.0, 30.0), markers="AB"))
