@@ -86,15 +86,8 @@ def fit(
         beside = Blocks.of(calibrated, CATALOGUE).beside_loads(calibrated.unit)
         told += refuse_pushed(calibrated, readings, *beside)
         found = beside_lacking(with_model_form(calibrated))
-        return replace(
-            found,
-            notes=(
-                *told,
-                *found.notes,
-                *pounds(found),
-                *(remounted(found, readings) or creeping(found, readings)),
-            ),
-        )
+        by_row = remounted(found) or creeping(found, readings)
+        return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
     if not waves:
         raise InputError(
             "only positions show waves of a gear, and these readings are displacements",

@@ -24,6 +24,7 @@ from sk120stiff.measurements.placing_slips import (
     to_the_floor,
     with_sums,
 )
+from sk120stiff.measurements.placing_zeros import small_zeros
 from sk120stiff.measurements.registration import Registration
 from sk120stiff.measurements.upside_down import OtherConvention, standing
 from sk120stiff.robot import STANDARD_GRAVITY, Robot
@@ -35,6 +36,7 @@ BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 FEWER = 50  # rows that sums of joints are looked for in: there are many
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
+TOLD, LEAST = 3, 1e-3  # zeros of joints that are told, and rad below which none is
 SHIFTS = (1, -1, 2, -2)  # rows by which positions may be off their joints
 COMPUTED = 2e-6  # m; no arm is built, and no tracker reads, as well as that
 
@@ -102,6 +104,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         own = np.array([labels.index(said.groups[k]) for k in whole]) if said.groups else one
         cloud = replace(cloud, group=own)
         found, kept = cloud.placed(fit_marker=True)
+    notes: list[str] = []
     if found.rms > SUSPECT * spread:
         _refuse_slips(cloud, found, readings, whole, spread)
     if found.rms > FITS * spread:
@@ -111,8 +114,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
                 where=readings.place,
                 remedy="Measure more poses, or state where the marker sits, without 'fit: true'.",
             )
-        raise _no_such_arm(cloud, found, readings, whole)
-    notes: list[str] = []
+        notes = [_of_small_zeros(cloud, found, readings, whole, spread)]
     if not free:
         stated, at = cloud.placed(fit_marker=False)
         if stated.rms > MOVED * found.rms and found.marker_fitted:
@@ -349,16 +351,29 @@ def _left(found: Registration) -> str:
     )
 
 
-def _no_such_arm(
-    cloud: Cloud, found: Registration, readings: Measurements, whole: Index
-) -> InputError:
-    """Positions that no placing of this robot gives."""
+def _of_small_zeros(
+    cloud: Cloud, found: Registration, readings: Measurements, whole: Index, spread: float
+) -> str:
+    """That zeros of joints, a little off, bring this arm where the positions are.
+
+    Raises:
+        InputError: They do not: no placing of this robot gives these positions.
+    """
+    zeros = small_zeros(cloud)
+    if zeros.small and zeros.rms <= FITS * spread:
+        most = [k for k in np.argsort(-np.abs(zeros.zero))[:TOLD] if abs(zeros.zero[k]) > LEAST]
+        told = [f"{readings.joint_names[k]} by {1e3 * zeros.zero[k]:+.2g} mrad" for k in most]
+        return (
+            f"Zeros of joints look off what the robot's file states, {listed(told)}: with them "
+            f"{1e3 * zeros.rms:.2g} mm are left of {1e3 * found.rms:.2g} mm. They are looked for "
+            "among the causes."
+        )
     distance = cloud.left(found)
     worst = np.argsort(-distance)[:3]
     lines = ", ".join(str(readings.line[whole[k]]) for k in worst)
-    return InputError(
-        f"{_left(found)}, of positions that spread over "
-        f"{1e3 * float(np.ptp(cloud.x, axis=0).max()):.4g} mm",
+    raise InputError(
+        f"{_left(found)}, of positions that spread over {1e3 * spread:.4g} mm rms about their "
+        f"middle, and {1e3 * zeros.rms:.4g} mm with other zeros of the joints",
         where=f"{readings.path or 'measurements'}, worst in lines {lines}",
         remedy="Check that they are of this robot, that rows of joints and positions belong "
         "together, units, signs and order of the joint columns, and the names of markers.",

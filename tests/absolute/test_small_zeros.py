@@ -1,0 +1,39 @@
+"""An arm whose zeros were set by eye, read over a small part of its workspace, in all turns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sk120stiff as sk
+from sk120stiff.errors import InputError
+from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.placing import place
+from tests.absolute.arm import NAMES, errors, poses, tracked, write
+from tests.absolute.shared import FIT
+
+REACH = np.array([0.05, 0.05, 0.05, 1.0, 1.0, 1.0])  # of the joints' ranges
+OFF = np.array([0.0, -0.05, 0.08, 0.06, -0.07, 0.0])  # rad
+
+
+def readings(folder: Path, zero: np.ndarray, scale: float = 1.0) -> Measurements:
+    a = np.array([0.2, 0.3, -0.2, 0.4, 0.5, 0.1]) + poses(60, 4) * REACH
+    x = scale * tracked(errors(4).stands(a + zero)[0])
+    x += 3e-5 * np.random.default_rng(4).normal(size=x.shape)
+    return sk.read(write(folder, a, x, FIT)).with_joints(NAMES)
+
+
+def test_zeros_that_bring_the_arm_there_are_told(tmp_path: Path) -> None:
+    data = readings(tmp_path, OFF)
+    found = place(sk.load_robot(data.robot, base="base", tool="tool"), data)
+    assert found is not None
+    (said,) = [note for note in found.notes if "Zeros of joints" in note]
+    assert "looked for among the causes" in said
+
+
+def test_another_arm_is_refused_as_before(tmp_path: Path) -> None:
+    data = readings(tmp_path, OFF, scale=1.3)
+    with pytest.raises(InputError, match="with other zeros of the joints|another unit|look"):
+        place(sk.load_robot(data.robot, base="base", tool="tool"), data)
