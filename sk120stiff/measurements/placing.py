@@ -36,7 +36,6 @@ BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 FEWER = 50  # rows that sums of joints are looked for in: there are many
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
-TOLD, LEAST = 3, 1e-3  # zeros of joints that are told, and rad below which none is
 SHIFTS = (1, -1, 2, -2)  # rows by which positions may be off their joints
 COMPUTED = 2e-6  # m; no arm is built, and no tracker reads, as well as that
 
@@ -54,6 +53,7 @@ class Placing:
         wild: (N,) rows far off all others.
         distance: (N,) what is left at each row [m]; NaN where no whole position was read.
         notes: What is to be said, in sentences.
+        far_off: Other zeros of the joints are needed: the rigid arm is far off without.
     """
 
     shift: Array
@@ -64,6 +64,7 @@ class Placing:
     wild: Mask
     distance: Array
     notes: tuple[str, ...] = ()
+    far_off: bool = False
 
 
 def place(robot: Robot, readings: Measurements) -> Placing | None:
@@ -104,7 +105,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         own = np.array([labels.index(said.groups[k]) for k in whole]) if said.groups else one
         cloud = replace(cloud, group=own)
         found, kept = cloud.placed(fit_marker=True)
-    notes: list[str] = []
+    notes, far_off = list[str](), False
     if found.rms > SUSPECT * spread:
         _refuse_slips(cloud, found, readings, whole, spread)
     if found.rms > FITS * spread:
@@ -114,7 +115,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
                 where=readings.place,
                 remedy="Measure more poses, or state where the marker sits, without 'fit: true'.",
             )
-        notes = [_of_small_zeros(cloud, found, readings, whole, spread)]
+        notes, far_off = [_of_small_zeros(cloud, found, readings, whole, spread)], True
     if not free:
         stated, at = cloud.placed(fit_marker=False)
         if stated.rms > MOVED * found.rms and found.marker_fitted:
@@ -159,6 +160,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         wild=wild,
         distance=distance,
         notes=tuple(notes),
+        far_off=far_off,
     )
 
 
@@ -361,13 +363,7 @@ def _of_small_zeros(
     """
     zeros = small_zeros(cloud)
     if zeros.small and zeros.rms <= FITS * spread:
-        most = [k for k in np.argsort(-np.abs(zeros.zero))[:TOLD] if abs(zeros.zero[k]) > LEAST]
-        told = [f"{readings.joint_names[k]} by {1e3 * zeros.zero[k]:+.2g} mrad" for k in most]
-        return (
-            f"Zeros of joints look off what the robot's file states, {listed(told)}: with them "
-            f"{1e3 * zeros.rms:.2g} mm are left of {1e3 * found.rms:.2g} mm. They are looked for "
-            "among the causes."
-        )
+        return zeros.sentence(readings.joint_names, found.rms)
     distance = cloud.left(found)
     worst = np.argsort(-distance)[:3]
     lines = ", ".join(str(readings.line[whole[k]]) for k in worst)

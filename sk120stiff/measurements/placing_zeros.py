@@ -6,16 +6,19 @@ of its workspace that leaves more than another robot's arm would be allowed to; 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask, rms
+from sk120stiff.errors import listed
 from sk120stiff.measurements.cloud import Cloud
 
 USUAL = 0.02  # rad; zeros within which they are sought
 LARGEST = 0.1  # rad; a joint that is off by more has another convention
 STEPS = 4  # of Gauss and Newton
+TOLD, LEAST = 3, 1e-3  # zeros that are told, and rad below which none is
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +37,16 @@ class Zeros:
     def small(self) -> bool:
         """They are those of marks that were set by eye."""
         return bool(np.abs(self.zero).max() <= LARGEST)
+
+    def sentence(self, names: Sequence[str], before: float) -> str:
+        """What they bring, where `before` is left without [m]."""
+        most = [k for k in np.argsort(-np.abs(self.zero))[:TOLD] if abs(self.zero[k]) > LEAST]
+        told = listed([f"{names[k]} by {1e3 * self.zero[k]:+.2g} mrad" for k in most])
+        return (
+            f"Zeros of joints look off what the robot's file states, {told}: with them "
+            f"{1e3 * self.rms:.2g} mm are left of {1e3 * before:.2g} mm. They are looked for among "
+            "the causes."
+        )
 
 
 def small_zeros(cloud: Cloud) -> Zeros:

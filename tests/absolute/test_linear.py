@@ -1,11 +1,14 @@
 """Evidence, held-out gaps and confirmation of causes of positions, on made-up columns."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
+from sk120stiff.explain.absolute import standing as standing_of
 from sk120stiff.explain.absolute.choose import (
     CLEAR,
     SHARE,
@@ -16,7 +19,8 @@ from sk120stiff.explain.absolute.choose import (
     gain,
 )
 from sk120stiff.explain.absolute.linear import Linear
-from sk120stiff.explain.absolute.standing import alternatives
+from sk120stiff.explain.absolute.standing import alternatives, of_all, standing
+from sk120stiff.explain.priors import FALLEN
 from sk120stiff.identify.absolute.gauss_newton import gauss_newton
 from sk120stiff.robot import load_robot
 
@@ -147,3 +151,34 @@ def test_geometry_is_drawn_to_where_its_prior_stands():
     free = (np.full(3, -np.inf), np.full(3, np.inf))
     found = gauss_newton(lambda x: (J @ x - y, J), np.zeros(3), free, span, centre)
     assert np.allclose(found.x, best, atol=1e-2)
+
+
+def test_causes_that_stand_for_one_another_are_likely_together():
+    """Each takes off hardly anything beside the other; both a lot of what is left otherwise."""
+    made = linear(5.0, 5.0, sigma=0.3)
+    twin = made.columns[:, 0] + 0.03 * made.columns[:, 3]
+    made = replace(
+        made, columns=np.column_stack([made.columns[:, 0], twin, made.columns[:, 2:]]), smooth=0.8
+    )
+    alone = [alternatives(made.only((0, 1)), (0, 1), e)[1] for e in (0, 1)]
+    assert of_all(made, (0, 1)) > max(alone) + 0.1
+    nothing = replace(linear(0.0, 0.0), smooth=0.8)
+    assert of_all(nothing, (0, 1)) <= 0.5
+
+
+@pytest.mark.parametrize("borne_out", [True, False])
+def test_a_rival_that_poses_left_out_refute_is_less_likely_than_the_name_that_they_bear_out(
+    monkeypatch, borne_out
+):
+    """A few readings far from all others make evidence of a column that is large there alone."""
+    made = linear(1.2, 0.3)
+    columns = made.columns.copy()
+    columns[:, 1] += 4.0 * columns[:, 0]  # all of the truth
+    made = replace(made, columns=columns)
+    noise = made.noise((0,))
+    assert made.score((1,), noise) > made.score((0,), noise)
+    monkeypatch.setattr(standing_of, "confirmed", lambda gained, made: borne_out)
+    own, rival = (standing(made, (0,), 0)[made.candidates[e].id] for e in (0, 1))
+    assert (rival > own) == borne_out
+    if not borne_out:
+        assert rival == pytest.approx(FALLEN * own)

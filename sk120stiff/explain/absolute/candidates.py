@@ -20,6 +20,7 @@ from sk120stiff.effects import (
     load_cases_of,
     referred,
 )
+from sk120stiff.effects.geometry import JointOffset
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.options import Options
@@ -32,7 +33,7 @@ from sk120stiff.robot import Robot
 
 FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
-FAR = 5.0  # times the usual size of a frame's error, beyond which it is as large as was found
+FAR = 5.0  # times the usual size of a frame's error or a zero's, beyond which it is as was found
 COMPLIANCE = "compliance"  # the family of all that yields
 
 
@@ -104,7 +105,7 @@ def linear_at(
     hidden: list[Effect] = []
     for effect in effects:
         size = usual_sizes(effect, off)
-        if isinstance(effect, JointFrame) and effect.id in fitted:
+        if isinstance(effect, JointFrame | JointOffset) and effect.id in fitted:
             far = np.abs([known[f"{effect.id}.{spec.name}"] for spec in effect.parameters])
             size = np.where(far > FAR * size, far, size)
         block = beside(Q, white(found[effect] * size))

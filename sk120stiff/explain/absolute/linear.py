@@ -156,8 +156,10 @@ class Linear:
         """The same numbers with other uncertainties."""
         if before.common == after.common:
             return self
-        arrays = {name: getattr(self, name) for name in ("residual", "base", "columns")}
-        return replace(self, **{k: after.apply(before.undo(each)) for k, each in arrays.items()})
+        residual, base, columns = (
+            after.apply(before.undo(each)) for each in (self.residual, self.base, self.columns)
+        )
+        return replace(self, residual=residual, base=base, columns=columns)
 
     def values(self, chosen: tuple[int, ...], noise: float) -> dict[str, float]:
         """Internal value of every parameter of the chosen by its full name; what is rigid is 0."""

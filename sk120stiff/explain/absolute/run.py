@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.effects import Catalogue, Effect, all_effects
+from sk120stiff.effects.geometry import JointOffset
+from sk120stiff.effects.options import Options as EffectOptions
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.accounts import (
     families_of,
@@ -35,7 +37,7 @@ from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, la
 from sk120stiff.explain.absolute.linear import Linear, everything
 from sk120stiff.explain.absolute.other_poses import NextPoses, elsewhere, never_told, next_poses
 from sk120stiff.explain.absolute.remainder import where_it_lives
-from sk120stiff.explain.absolute.standing import alternatives
+from sk120stiff.explain.absolute.standing import alternatives, of_all
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options, refuse_unknown
 from sk120stiff.identify import refuse_for_positions, refuse_plan
@@ -63,6 +65,7 @@ from sk120stiff.model import Model
 FEWEST = 10  # poses below which no other pose can confirm a name
 FEWEST_LOADED = 6  # the same where each is read by what loads do, several numbers to a pose
 EVEN = 0.5  # probability that one name at least must have to be confirmed
+TOGETHER = 0.8  # the same of all of them as one, where each may stand for the others
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
 
@@ -105,7 +108,7 @@ def explain_positions(
     refuse_other_forces(base, readings)
     hangs = refuse_another_gravity(base, readings)
     tell("searching the catalogue", 0.2)
-    seen = base
+    seen = _about(base, readings, catalogue)
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
     pushed = refuse_pushed(base, readings, *everything(linear))
     tell("fitting exactly", 0.5)
@@ -128,10 +131,17 @@ def explain_positions(
         linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
         likely = [alternatives(linear, found.order, e)[1] for e in found.order]
         if likely and max(likely) < EVEN:
-            inside = numbers_told(seen, final, readings)
-            guess, suspects = final, suspects_of(linear, found, seen, inside)
-            found, laws = nothing_named(linear, found), {}
-            final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
+            if (together := of_all(linear, found.order)) < TOGETHER:
+                inside = numbers_told(seen, final, readings)
+                guess, suspects = final, suspects_of(linear, found, seen, inside)
+                found, laws = nothing_named(linear, found), {}
+                final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
+            else:
+                hangs += (
+                    "None of these names is likely by itself, since each may stand for the others; "
+                    "that what they take off together is theirs, and no part of an unknown cause, "
+                    f"has P = {together:.2f}.",
+                )
     final = beside_laws(final, linear, found.order, laws)
     final = replace(
         final,
@@ -194,6 +204,16 @@ def _selected(
     linear, found = with_fewer(linear, found, laws)
     laws = {e: own for e, own in laws.items() if e in found.order}
     return by_best_laws(linear, found.order, laws), found, laws, hidden
+
+
+def _about(base: Calibration, readings: Measurements, catalogue: Catalogue) -> Calibration:
+    """What causes are first looked for about: the arm with other zeros, where it is far off."""
+    if base.placed is None or not base.placed.far_off:
+        return base
+    robot = base.model.robot
+    present = {effect.id for effect in base.model.effects}
+    zeros = (JointOffset.at(robot, joint, EffectOptions()) for joint in robot.actuated)
+    return refined(base, [e for e in zeros if e.id not in present], readings, None, catalogue)
 
 
 def _with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen:

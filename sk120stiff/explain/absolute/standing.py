@@ -16,6 +16,14 @@ def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple
     return rivals, float(weight[:-1].sum() / weight.sum())
 
 
+def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:
+    """Probability that what all of the chosen take off together is no part of an unknown cause.
+
+    Of errors of geometry that stand for one another none is likely by itself.
+    """
+    return 1.0 / (1.0 + _impostor(linear, chosen, ()))
+
+
 def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
     """Probability of one of the chosen, and of each that explains as much in its place.
 
