@@ -20,6 +20,7 @@ BETTERED = 0.9  # of what is left, that one change of a convention must fall bel
 SIDE = 6  # rows at least before and after the tracker moved
 SPLITS = 16  # rows between which that is looked for first
 WHOLE = 2  # joints of whose ways all are kept, since the wrist tells little of them
+ROUGHLY = 1.5  # times what is left, up to which a convention may be the one: few poses tell them
 KEPT = 32  # of the ways of the joints so far that are followed
 SLACK = 0.02  # rad or m; a joint may go so far beyond what its URDF states
 NEARLY = 1e-3  # of what is left, by which a marker may still move where ways are compared
@@ -179,11 +180,13 @@ class Convention:
         rms: What is left with it [m].
         share: (n, n) of the columns in each joint.
         zero: (n,) [rad].
+        others: Those that leave nearly as little, the least odd first.
     """
 
     rms: float
     share: Array
     zero: Array
+    others: tuple[Convention, ...] = ()
 
     def expressions(self, columns: Sequence[str]) -> list[str]:
         """``-A2 + 90 deg``: every joint by names of the columns."""
@@ -234,7 +237,12 @@ def signs_and_turns(cloud: Cloud, *, floor: bool = False) -> Convention:
         ]
         ranked.sort(key=lambda item: item[:2])
         ways = [own for *_, own in (ranked if k < WHOLE else ranked[:KEPT])]
-    return Convention(_left(cloud, ways[:1])[0], *ways[0])
+    best, *others = (
+        Convention(rms, *way) for rms, way in zip(_left(cloud, ways), ways, strict=True)
+    )
+    near = [way for way in others if way.rms < ROUGHLY * best.rms]
+    near.sort(key=lambda way: (*oddness(cloud, way.share, way.zero), way.rms))
+    return replace(best, others=tuple(near))
 
 
 def to_the_floor(cloud: Cloud) -> Convention:

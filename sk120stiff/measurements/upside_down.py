@@ -76,7 +76,9 @@ class OtherConvention(InputError):
 
 
 def standing(cloud: Cloud, way: Convention, gravity: Array) -> Standing:
-    """The convention, or the one with the base turned over if that fits as well and is upright.
+    """The convention, or one that fits as well, or nearly so, and has the base upright.
+
+    Poses that move one joint after the other hardly tell a base that stands from one that hangs.
 
     Args:
         cloud: Positions and columns.
@@ -85,6 +87,12 @@ def standing(cloud: Cloud, way: Convention, gravity: Array) -> Standing:
     """
     up, rms = _up(cloud, way, gravity)
     found = Standing(replace(way, rms=rms), up)
+    if found.hangs:
+        for near in way.others:
+            up, rms = _up(cloud, near, gravity)
+            other = Standing(replace(near, rms=rms), up, found)
+            if other.upright:
+                return other
     turned = _turned_over(cloud, way)
     if up is None or turned is None:
         return found

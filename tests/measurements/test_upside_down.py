@@ -41,6 +41,25 @@ def test_the_upright_one_of_two_that_fit_alike_is_told(cloud: Cloud) -> None:
     assert hung.upright and hung.way.share[0, 0] > 0.0
 
 
+def test_an_upright_one_that_leaves_a_little_more_comes_before_one_that_hangs() -> None:
+    """Poses that move one joint after the other hardly tell them."""
+    robot = sk.load_robot("ur5e")
+    n = len(robot.actuated)
+    cloud = cloud_of(robot, np.ones(n), np.zeros(n), seed=2)
+    noise = 1e-3 * np.random.default_rng(1).normal(size=cloud.x.shape)
+    cloud = replace(cloud, x=cloud.x + noise)
+    found = signs_and_turns(cloud)
+    left = [way.rms for way in (found, *found.others)]
+    assert len(left) > 1 and max(left) < 1.5 * min(left)
+    upright = standing(cloud, found, DOWN)
+    other = upright.other
+    assert upright.upright and other is not None and other.hangs
+    given = replace(other.way, others=(upright.way,))
+    again = standing(cloud, given, DOWN)
+    assert again.upright and again.other is not None and again.other.hangs
+    assert "upside down" in again.beside(told)
+
+
 def test_where_z_is_not_plumb_both_are_told_with_what_is_up(cloud: Cloud) -> None:
     seen = replace(cloud, x=cloud.x @ Y_UP.T)
     found = standing(seen, signs_and_turns(seen), DOWN)
