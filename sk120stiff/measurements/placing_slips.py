@@ -237,12 +237,11 @@ def signs_and_turns(cloud: Cloud, *, floor: bool = False) -> Convention:
         ]
         ranked.sort(key=lambda item: item[:2])
         ways = [own for *_, own in (ranked if k < WHOLE else ranked[:KEPT])]
-    best, *others = (
-        Convention(rms, *way) for rms, way in zip(_left(cloud, ways), ways, strict=True)
-    )
-    near = [way for way in others if way.rms < ROUGHLY * best.rms]
-    near.sort(key=lambda way: (*oddness(cloud, way.share, way.zero), way.rms))
-    return replace(best, others=tuple(near))
+    left = _left(cloud, ways)
+    best, *rest = [Convention(r, *way) for r, way in zip(left, ways, strict=True)]
+    close = [way for way in rest if way.rms < ROUGHLY * best.rms]
+    close.sort(key=lambda way: (*oddness(cloud, way.share, way.zero), way.rms))
+    return replace(best, others=tuple(close))
 
 
 def to_the_floor(cloud: Cloud) -> Convention:

@@ -14,7 +14,7 @@ from sk120stiff.explain.absolute.document import verdict_of_positions
 from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.absolute.next_step import headline
 from sk120stiff.explain.findings import likely
-from tests.absolute.arm import poses, tracked, write
+from tests.absolute.arm import poses, tracked, urdf, write
 from tests.absolute.test_forms import _with
 from tests.absolute.test_payload_place import CENTRE, COMPLIANCE, FIT, NOISE, robot_of
 
@@ -68,6 +68,27 @@ def test_the_size_of_a_wave_tells_by_its_error() -> None:
     assert sure[0] > 0.98 and abs(sure[1] - 0.95) < 0.01 and sure[-1] < 0.01
     assert sure == sorted(sure, reverse=True)
     assert chance_of_gear(6e-4, 3e-4) > sure[2] + 0.2
+
+
+def test_a_large_wave_of_an_arm_without_masses_may_be_its_weight(tmp_path: Path) -> None:
+    """Nobody knows then what hangs at the joint, nor how far its spring gives way."""
+    a = poses(60, 4)
+    arm = _with()
+    arm.compliance, arm.shift, arm.turn = np.zeros(6), np.zeros((6, 3)), np.zeros((6, 3))
+    arm.waves = np.zeros((6, 2))
+    arm.waves[2] = 1.2e-3, 4e-4
+    arm.waves[0] = 1.2e-3, 4e-4
+    x = tracked(arm.stands(a)[0]) + 2e-5 * np.random.default_rng(3).normal(size=(60, 3))
+    path = write(tmp_path, a, x, FIT + NOISE)
+    (tmp_path / "bare.urdf").write_text(urdf(weighs=False), encoding="utf-8")
+    found = sk.explain(sk.Model(sk.load_robot(tmp_path / "bare.urdf", tool="tool")), sk.read(path))
+    assert isinstance(found, Explained)
+    waves = {item.effect.where: item for item in found.findings if "transmission" in item.effect.id}
+    assert waves["j3"].untold == ("joint_springs:j3",) and not waves["j3"].settled
+    assert waves["j1"].untold == ()  # it stands upright
+    said = " ".join(found.final.notes)
+    assert "the arm's own weight, which the URDF does not state" in said
+    assert "masses and centres of mass into the URDF" in verdict_of_positions(found)["next_step"]
 
 
 def test_nothing_balances_an_upright_axis(tmp_path: Path) -> None:

@@ -1,10 +1,11 @@
-"""Waves of a joint once per turn: of its gear, or of a balancer or masses that put a torque on it.
+"""Waves of a joint once per turn: of its gear, or of a balancer or weight that put a torque on it.
 
 A spring that lifts an arm, or a mass that no URDF states, puts a torque on the joint that goes with
-the sine of its angle once per turn. Where nothing else tells that torque, the joint's own spring
-turns it into a wave that neither pose nor payload tells from a gear which is not round. Only its
-size does: with lognormal sizes p of either, that which was read with its error speaks for one over
-the other by the ratio of ∫ p(A) N(A; read, error) dA (Bayes).
+the sine of its angle once per turn. So does the whole arm where its URDF states no masses. Where
+nothing else tells that torque, the joint's own spring turns it into a wave that neither pose nor
+payload tells from a gear which is not round. Only its size does: with lognormal sizes p of either,
+that which was read with its error speaks for one over the other by the ratio of
+∫ p(A) N(A; read, error) dA (Bayes).
 """
 
 from __future__ import annotations
@@ -26,16 +27,14 @@ GEARS = (1e-4, 3e-4)  # rad once per turn: two of three gears of robots (an arc 
 BALANCERS = (3e-4, 3e-3)  # rad: the same of torques that nobody stated, over springs of joints
 BALANCED = USUAL  # probability of such a torque at a joint that it could lift, beforehand
 LEAST, MOST, STEPS = 1e-6, 1e-1, 2000  # rad: sizes over which is summed, in even ratios
+UPRIGHT = 0.9  # cosine between an axis and gravity, from which on weight does not turn a joint
 ROUNDED = 0.01  # of the wave, its error at least
 
 
 def or_balancer(item: Named, final: Calibration) -> Named:
     """The name with the balancer that may stand behind it; as it is where its gear may make it."""
-    told = _torque(item.effect, final)
-    if told is None:
-        return item
-    name = f"{GravityCompensator.name}:{item.effect.where}"
-    if name in item.others:  # poses tell it
+    name = _behind(item.effect, final)
+    if name is None or name in item.others:  # poses tell it
         return item
     known = (*item.alternatives, name), (*item.exact, name)
     more, exact = (tuple(dict.fromkeys(names)) for names in known)
@@ -59,29 +58,40 @@ def balancing(final: Calibration) -> tuple[str, ...]:
     """What such waves may be instead, in sentences."""
     said = []
     for effect in final.model.effects:
+        if _behind(effect, final) is None:
+            continue
+        wave = two_digits(1e3 * _wave(effect, final)[0])
+        low, high = (two_digits(1e3 * size) for size in GEARS)
         torque = _torque(effect, final)
-        if torque is not None:
-            wave = two_digits(1e3 * _wave(effect, final)[0])
-            low, high = (two_digits(1e3 * size) for size in GEARS)
-            said.append(
-                f"Once per turn {effect.where} stands off by {wave} mrad, where gears usually do "
-                f"by {low} to {high}: a balancer (a spring, a gas strut) or masses of the arm that "
-                f"the URDF does not state, with {two_digits(torque)} N·m at most, stand it off "
-                "alike, and neither pose nor payload tells which."
-            )
+        what = (
+            "the arm's own weight, which the URDF does not state, stands it off alike on the "
+            "joint's spring, and no pose tells which. State masses and their centres."
+            if torque is None
+            else "a balancer (a spring, a gas strut) or masses of the arm that the URDF does not "
+            f"state, with {two_digits(torque)} N·m at most, stand it off alike, and neither pose "
+            "nor payload tells which."
+        )
+        said.append(
+            f"Once per turn {effect.where} stands off by {wave} mrad, where gears usually do by "
+            f"{low} to {high}: {what}"
+        )
     return tuple(said)
 
 
 def tell_apart(named: Sequence[Named]) -> tuple[str, ...]:
-    """What tells a gear from a balancer, in sentences."""
-    joints = [item.effect.where for item in named if item.untold]
+    """What tells a gear from a balancer or from weight, in sentences."""
     return tuple(
-        f"To tell the gear of {joint} from a balancer or masses: read some of these poses again "
-        "with the balancer's pressure or spring released, or the joint without the arm on it, or "
-        "compare the torque of its motor at rest with that of the URDF's masses. A balancer or "
-        "masses that are known belong into the URDF or the payload. Until then either foretells "
-        "positions alike."
-        for joint in joints
+        f"To tell the gear of {item.effect.where} from the arm's weight on its spring: write the "
+        "maker's masses and centres of mass into the URDF, or read some of these poses under a "
+        "payload too, which tells the spring. Until then either foretells positions alike."
+        if item.untold[0].startswith("joint_springs")
+        else f"To tell the gear of {item.effect.where} from a balancer or masses: read some of "
+        "these poses again with the balancer's pressure or spring released, or the joint without "
+        "the arm on it, or compare the torque of its motor at rest with that of the URDF's "
+        "masses. A balancer or masses that are known belong into the URDF or the payload. Until "
+        "then either foretells positions alike."
+        for item in named
+        if item.untold
     )
 
 
@@ -101,13 +111,30 @@ def _usual(sizes: Array, low: float, high: float) -> Array:
     return np.asarray(np.exp(-0.5 * off**2) / spread)
 
 
-def _torque(effect: Effect, final: Calibration) -> float | None:
-    """Torque that makes the waves of an effect with the spring of its joint [N·m].
+def _behind(effect: Effect, final: Calibration) -> str | None:
+    """Id of what may make the waves of an effect instead of the gear of its joint.
 
-    None where its gear surely makes them, or where no joint is that a balancer lifts.
+    None where its gear surely makes them, or nothing can.
     """
     if not isinstance(effect, TransmissionError) or chance_of_gear(*_wave(effect, final)) >= SURE:
         return None
+    if _torque(effect, final) is not None:
+        return f"{GravityCompensator.name}:{effect.where}"
+    robot, cases = final.model.robot, final.problem.load_cases
+    if robot.mechanism().chain.weighs or not robot.gravity_in_base.any():
+        return None
+    k = robot.actuated.index(effect.where)
+    axis = robot.screws(cases.a).jacobian[:, 3:, k]
+    down = robot.gravity_in_base / np.linalg.norm(robot.gravity_in_base)
+    upright = np.abs(axis @ down) >= UPRIGHT * np.linalg.norm(axis, axis=1)
+    return None if upright.all() else f"joint_springs:{effect.where}"
+
+
+def _torque(effect: Effect, final: Calibration) -> float | None:
+    """Torque that makes the waves of an effect with the spring of its joint [N·m].
+
+    None where no spring is known, or no joint is that a balancer lifts.
+    """
     if effect.where not in GravityCompensator.places(final.model.robot):
         return None
     springs = dict(zip(final.model.robot.actuated, final.model.joint_stiffness(), strict=True))
