@@ -8,8 +8,9 @@ between tool and target, whatever the pose.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -34,6 +35,7 @@ from sk120stiff.robot import Robot
 FEWEST = 6  # orientations that tell how they are meant
 SAME = 1e-6  # rad; ways that differ by less at every pose are one
 APART = 5.0  # times farther off the arm the next way of reading them has to be
+QUARTERS = [*Rotation.create_group("O")]  # axes that are exchanged or of the other sign
 KNOWN = {
     "zyx moved": "KUKA's A, B, C",
     "xyz fixed": "FANUC's W, P, R",
@@ -51,6 +53,7 @@ class Orientation:
         way: How the numbers are meant, in words.
         off, next: Angle to the arm's (median), so and in the next best way [rad].
         turned: By how much the target is turned on the tool [rad].
+        axes: Rotation vector of the axes that they are told in, against those of the positions.
     """
 
     columns: tuple[str, ...]
@@ -59,11 +62,16 @@ class Orientation:
     off: float
     next: float
     turned: float
+    axes: Array = field(default_factory=lambda: np.zeros(3))
 
     def sentence(self) -> str:
         """What was understood."""
+        told = ""
+        if self.axes.any():
+            about = ", ".join(f"{part:.3g}" for part in np.degrees(self.axes) + 0.0)
+            told = f" in axes turned by ({about}) deg against those of the positions, and put right"
         return (
-            f"Orientations {', '.join(self.columns)} are {self.way}: so they are "
+            f"Orientations {', '.join(self.columns)} are {self.way}{told}: so they are "
             f"{np.degrees(self.off):.2g} deg off the arm's (median), in the next best way "
             f"{np.degrees(self.next):.2g} deg. The target is turned by "
             f"{np.degrees(self.turned):.3g} deg on the tool, which the fit finds with all else."
@@ -104,18 +112,19 @@ def understood(
     tool = Rotation.from_matrix(turn @ robot.screws(draft.joints.values[used]).rotation)
     group = np.unique(np.array(draft.mounts)[used], return_inverse=True)[1]
     count = int(group.max()) + 1
-    found = []
-    for way, turned in _ways(values[whole]):
-        read = turned[np.flatnonzero(np.isin(np.flatnonzero(whole), used))]
-        sits = mounting(tool, read, group, count)
-        off = float(np.median(((tool * sits[group]).inv() * read).magnitude()))
-        found.append((off, way, turned, float(sits.magnitude().max())))
-    found.sort(key=lambda item: item[0])
-    off, way, turned, sits_by = found[0]
-    other = next(each for each in found[1:] if not _same(turned, each[2]))
-    after = other[0]
-    if off > FITS:
-        return f"in no usual way are they the arm's: {np.degrees(off):.2g} deg are left at least"
+    seen = np.flatnonzero(np.isin(np.flatnonzero(whole), used))
+    ways = list(_ways(values[whole]))
+    found = _tried(ways, [Rotation.identity()], tool, seen, group, count)
+    if found[0].off > FITS:
+        least = found[0].off
+        found = _tried(ways, QUARTERS, tool, seen, group, count)
+        if found[0].off > FITS:
+            return (
+                f"in no usual way are they the arm's: {np.degrees(least):.2g} deg are left at least"
+            )
+    best = found[0]
+    other = next(each for each in found[1:] if not _same(best, each))
+    off, after = best.off, other.off
     if off < COMPUTED:
         return (
             f"they follow the robot of the URDF to {np.degrees(off):.1g} deg, nearer than any "
@@ -123,12 +132,13 @@ def understood(
         )
     if after < APART * off:
         return (
-            f"they can be meant as {way} or as {other[1]}: {np.degrees(off):.2g} and "
+            f"they can be meant as {best.way} or as {other.way}: {np.degrees(off):.2g} and "
             f"{np.degrees(after):.2g} deg are left"
         )
     rotation = np.full((len(values), 3, 3), np.nan)
-    rotation[whole] = turned.as_matrix()
-    return Orientation(tuple(c.header for c in columns), rotation, way, off, after, sits_by)
+    rotation[whole] = best.read.as_matrix()
+    headers = tuple(c.header for c in columns)
+    return Orientation(headers, rotation, best.way, off, after, best.sits, best.axes.as_rotvec())
 
 
 def with_orientation(
@@ -151,8 +161,54 @@ def with_orientation(
     return replace(draft, other=(*written, *draft.other), said=(*draft.said, found.sentence()))
 
 
-def _same(one: Rotation, other: Rotation) -> bool:
-    return float((one.inv() * other).magnitude().max()) < SAME
+class _Read(NamedTuple):
+    """Orientations read in one way.
+
+    Attributes:
+        off: Angle to the arm's (median) [rad].
+        way: Which, in words.
+        read: (P,) of the target, axes of the positions.
+        sits: By how much the target is turned on the tool [rad].
+        axes: Those that they are told in, against those of the positions.
+    """
+
+    off: float
+    way: str
+    read: Rotation
+    sits: float
+    axes: Rotation
+
+
+def _tried(
+    ways: Sequence[tuple[str, Rotation]],
+    turns: Sequence[Rotation],
+    tool: Rotation,
+    seen: Index,
+    group: Index,
+    count: int,
+) -> list[_Read]:
+    """Every way in every axes, that which is nearest to the arm's (P,) first.
+
+    Args:
+        ways: Names, and the orientations read so.
+        turns: Axes that they may be told in.
+        tool: The arm's, where they stand (P,).
+        seen: Which of the orientations those are.
+        group, count: Which targets sit alike.
+    """
+    found = []
+    for (way, turned), axes in product(ways, turns):
+        read = axes.inv() * turned
+        sits = mounting(tool, read[seen], group, count)
+        off = float(np.median(((tool * sits[group]).inv() * read[seen]).magnitude()))
+        found.append(_Read(off, way, read, float(sits.magnitude().max()), axes))
+    return sorted(found, key=lambda each: (round(each.off, 9), each.axes.magnitude()))
+
+
+def _same(one: _Read, other: _Read) -> bool:
+    """Do two ways differ by how the target sits on the tool at most?"""
+    between = one.read.inv() * other.read
+    return float((between[0].inv() * between).magnitude().max()) < SAME
 
 
 def _unit(draft: Draft, columns: Sequence[Column], told: Told) -> str | None:

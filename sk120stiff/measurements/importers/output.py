@@ -33,8 +33,8 @@ def _hangs(mode: Mode, told: Told) -> str:
         return " The payload hangs where --payload-point says."
     if mode == "positions":
         return (
-            " Where the payload hangs is not known: where masses differ, 'identify' and 'explain' "
-            "find it; else state the centre of its mass, --payload-point '0,0,120 mm' "
+            " Where the payload hangs is not known: where masses differ, 'identify' fits it; "
+            "else state the centre of its mass, --payload-point '0,0,120 mm' "
             "(payload.point in the YAML file)."
         )
     return (

@@ -74,6 +74,20 @@ def test_the_arm_tells_how_they_are_meant(
     assert not any(header in item for item in found.draft.unused for header in headers.split(","))
 
 
+def test_axes_that_are_turned_against_those_of_the_positions_are_put_right(
+    tmp_path: Path,
+) -> None:
+    """A scanner that tells turns in axes of its own, x and y exchanged."""
+    other = Rotation.from_euler("z", -90.0, degrees=True)
+    found = brought(tmp_path, "rx[deg],ry[deg],rz[deg]", euler("xyz")(other * target()))
+    read, said = found.orientation, found.readings.absolute
+    assert read is not None and said is not None
+    assert "fixed axes x, y, z" in read.way and "(0, 0, -90) deg" in read.sentence()
+    known = Rotation.from_matrix(said.channels.rotation)
+    apart = known.inv() * target()  # but for how the target is said to sit
+    assert (apart[0].inv() * apart).magnitude().max() < 1e-6
+
+
 def test_they_come_into_base_axes_with_the_positions(tmp_path: Path) -> None:
     found = brought(tmp_path, "A,B,C", euler("ZYX")(target()), into_base=True)
     said = found.readings.absolute
