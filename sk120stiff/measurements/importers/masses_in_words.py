@@ -71,6 +71,8 @@ def masses_of_name(stem: str, beside: Sequence[str] = ()) -> Words:
         (5.0,)
         >>> masses_of_name("IRB6700_155kg").masses
         ()
+        >>> masses_of_name("run3_2.5kg", ["run1_0kg", "run3_2.5kg"]).masses
+        (2.5,)
     """
     found: dict[float, str] = {}
     left = []
@@ -79,9 +81,10 @@ def masses_of_name(stem: str, beside: Sequence[str] = ()) -> Words:
         called = bool(_BEFORE.search(before) or _BEHIND.match(behind))
         if not called and match["unit"] == "g":
             continue  # 5g is a network, 2g an acceleration
+        told = _pointed(stem, *beside) or _counted(before, match, beside)
         if _DENYING.search(stem):
             left.append((match.group(), DENIED))
-        elif _PART.search(before) and not _counted(before, match, beside):
+        elif _PART.search(before) and not told:
             left.append((match.group(), PARTED))
         elif not called and len(_alike(before, beside)) < 2:
             left.append((match.group(), ALONE))
@@ -111,6 +114,12 @@ def _alike(before: str, beside: Sequence[str]) -> set[str]:
     counted = re.sub(r"\d+", r"\\d+", re.escape(before))
     shape = re.compile(rf"{counted}(?P<number>{_NUMBER})[ _-]?{_UNIT}")
     return {m["number"] for name in beside if (m := shape.match(name)) if m["unit"] != "g"}
+
+
+def _pointed(*names: str) -> bool:
+    """Do these names write parts of a kilogram with a point?"""
+    masses = (match["number"] for name in names for match in _TOKEN.finditer(name))
+    return any(not number.isdigit() for number in masses)
 
 
 def _counted(before: str, match: re.Match[str], beside: Sequence[str]) -> bool:

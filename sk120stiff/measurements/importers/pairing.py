@@ -58,7 +58,9 @@ def paired(
                 where=f"{points.path} and {other.path}",
                 remedy="Give all files a column of names, those of the points. If they are the "
                 "same poses without and with a load, give the file without as --before FILE, and "
-                "the other alone. Else import them one by one, each with a file of its own.",
+                "the other alone; if each holds one marker at the same poses, row by row, put them "
+                "side by side in one file, x1 y1 z1 x2 y2 z2. Else import them one by one, each "
+                "with a file of its own.",
             )
         found = _by_order(points, other, what, untold)
     rows, others = found.rows, found.others
