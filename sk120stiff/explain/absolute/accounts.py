@@ -160,17 +160,22 @@ def suspects_of(
     linear: Linear, found: Chosen, seen: Calibration, inside: Index
 ) -> tuple[Contender, ...]:
     """Names that fit, and what each takes off the held-out rms over `inside` by itself [m]."""
-    metres = seen.problem.of_channels.undo
-
-    def left(chosen: tuple[int, ...]) -> float:
-        gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
-        return rms(metres(gap)[inside])
-
-    whole = left(found.order)
+    whole = held_out_rms(linear, found.order, seen, inside)
     return tuple(
-        Contender(linear.candidates[e].id, left(linear.less(found.order, e)) - whole)
+        Contender(
+            linear.candidates[e].id,
+            held_out_rms(linear, linear.less(found.order, e), seen, inside) - whole,
+        )
         for e in found.order
     )
+
+
+def held_out_rms(
+    linear: Linear, chosen: tuple[int, ...], seen: Calibration, inside: Index
+) -> float:
+    """Rms that some causes leave at poses left out, over the numbers `inside` [m]."""
+    gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
+    return rms(seen.problem.of_channels.undo(gap)[inside])
 
 
 def rms(x: Array) -> float:

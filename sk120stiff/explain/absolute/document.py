@@ -74,6 +74,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
             {"name": item.id, "heldout_gain_um": um(item.heldout_gain)} for item in answer.suspects
         ],
         "best_guess": None if answer.guess is None else BEST_GUESS,
+        "best_guess_heldout_um": None if answer.guess is None else um(answer.guess_heldout),
         "not_named": list(answer.dropped),
         "not_observable": list(answer.hidden),
         "frozen": [item.name for item in final.frozen],

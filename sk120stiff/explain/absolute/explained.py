@@ -95,6 +95,7 @@ class Explained:
         suspects: Where nothing is confirmed: names that fit, and what they take off the held-out
             rms [m].
         guess: The calibration with these.
+        guess_heldout: Rms that it leaves at poses left out [m].
         where: Where what is left lives, in sentences.
         smallest: Sizes that would have been named beside the named causes.
         probabilities: Name → probability of its being at work, of all that have one worth telling.
@@ -118,6 +119,7 @@ class Explained:
     chance: float | None
     suspects: tuple[Contender, ...]
     guess: Calibration | None
+    guess_heldout: float
     where: tuple[str, ...]
     smallest: tuple[Detectable, ...]
     probabilities: dict[str, float]

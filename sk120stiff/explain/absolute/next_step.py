@@ -81,6 +81,11 @@ def next_step_of_positions(answer: Explained) -> str:
         elif any(item.others or item.probability < SURE for item in answer.findings):
             said.append("Take each open name as one of its class; readings of other kinds tell it.")
         said += tell_apart(answer.findings)
+    if answer.guess is not None and answer.guess_heldout < answer.steps[-1].heldout_rms:
+        said.append(
+            f"best_guess.yaml is off by {1e6 * answer.guess_heldout:.4g} {unit} there: nearer, for "
+            "reasons that are not confirmed."
+        )
     if answer.verdict == "outside":
         said.append(
             "Trust it no farther than poses like those measured: more is left than the noise makes."

@@ -13,6 +13,7 @@ from sk120stiff.effects.options import Options as EffectOptions
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute.accounts import (
     families_of,
+    held_out_rms,
     heldout_on,
     numbers_told,
     rms,
@@ -125,7 +126,7 @@ def explain_positions(
     if (apart := _with_own_values(linear, found, final)) != found:
         found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
     tell("what is left", 0.85)
-    final, guess = with_model_form(final), None
+    final, guess, guessed = with_model_form(final), None, np.nan
     suspects: tuple[Contender, ...] = ()
     if final.form is not None:
         linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
@@ -134,6 +135,7 @@ def explain_positions(
             if (together := of_all(linear, found.order)) < TOGETHER:
                 inside = numbers_told(seen, final, readings)
                 guess, suspects = final, suspects_of(linear, found, seen, inside)
+                guessed = held_out_rms(linear, found.order, seen, inside)
                 found, laws = nothing_named(linear, found), {}
                 final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
             else:
@@ -183,6 +185,7 @@ def explain_positions(
         chance=chance,
         suspects=suspects,
         guess=guess,
+        guess_heldout=guessed,
         where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
         probabilities=shared(probabilities(linear, found), named, final),
