@@ -16,32 +16,31 @@ from scipy.optimize import minimize_scalar
 from sk120stiff.arrays import Array
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.noise import NoiseModel
-from sk120stiff.measurements.repeats import STRONG
 
+HINT = 2.0  # twice the log-likelihood by which it must be likelier to be tried: causes decide
 _REACH = (-4.0, 4.0)  # natural logarithm of growth·|d|/σ at the usual displacement
 _MOST = 0.5  # growth beside the σ that a fit starts from
 
 
 def growing(noise: NoiseModel, measurements: Measurements, left: Array) -> NoiseModel | None:
-    """The noise with a part that grows with the displacement; None unless strongly asked for.
+    """The noise with a part that grows with the displacement; None unless something hints at it.
 
-    The part over σ is the likeliest one, σ at its best (as where repeats tell it, `repeats.py`).
-    What was stated, or told by repeats, stays.
+    The part over σ is the likeliest one in what is left, σ at its best (as where repeats tell it,
+    `repeats.py`). What was stated, or told by repeats, stays.
 
     Args:
-        noise: Of constant size, which the readings were fitted with.
+        noise: Which the readings were fitted with; its own growth does not count.
         measurements: Readings in use.
         left: (N, 3) measured minus predicted, m.
     """
     stated = measurements.noise.growth is not None or measurements.sigma is not None
-    if noise.known or noise.growth or noise.form or stated:
+    if noise.known or noise.form or stated:
         return None
     usual = float(np.median(np.linalg.norm(measurements.moved, axis=1)))
     if usual == 0.0:
         return None
 
-    def grown(logarithm: float) -> NoiseModel:
-        ratio = float(np.exp(logarithm)) / usual
+    def grown(ratio: float) -> NoiseModel:
         sigma = min(noise.sigma, _MOST / ratio)
         return replace(noise, sigma=sigma, growth=ratio * sigma)
 
@@ -51,9 +50,11 @@ def growing(noise: NoiseModel, measurements: Measurements, left: Array) -> Noise
         return len(white) * float(np.log(max(float(white @ white), 1e-300))) + whitener.logdet
 
     best = minimize_scalar(
-        lambda logarithm: unlikely(grown(logarithm)),
+        lambda logarithm: unlikely(grown(float(np.exp(logarithm)) / usual)),
         bounds=_REACH,
         method="bounded",
         options={"xatol": 0.02},
     )
-    return grown(float(best.x)) if unlikely(noise) - best.fun > STRONG else None
+    if unlikely(replace(noise, growth=0.0)) - best.fun <= HINT:
+        return None
+    return grown(float(np.exp(best.x)) / usual)

@@ -22,6 +22,8 @@ from sk120stiff.identify.solving import widened_as
 from sk120stiff.measurements import Measurements, NoiseModel, candidates, growing
 from sk120stiff.measurements.noise import FINEST
 
+TURNS, SAME = 4, 0.2  # of causes and noise at most, and change of ln(growth/σ) that is none
+
 
 class Try(Protocol):
     """Makes a selection under one noise model, with or without one more effect in the model."""
@@ -40,15 +42,33 @@ def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, N
     """
     tried = [under(noise) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]
-    grown = growing(found.base.problem.noise, found.final.problem.measurements, found.final.gap)
+    grown = _as_it_grows(found, under)
     if grown is not None:
-        again = under(grown)
         one_number_more = float(np.log(measurements.read.sum()))
-        found = (found, again)[likelier([-found.total, -again.total - one_number_more])]
+        found = (found, grown)[likelier([-found.total, -grown.total - one_number_more])]
     noise = found.base.problem.noise
     if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
+
+
+def _as_it_grows(found: Selection, under: Try) -> Selection | None:
+    """The best selection under noise that grows as what one leaves says, one after the other.
+
+    None where nothing hints at it: causes and noise are at their likeliest in turns.
+    """
+    best: Selection | None = None
+    before, known = 0.0, found
+    for _ in range(TURNS):
+        noise = known.base.problem.noise
+        grown = growing(noise, known.final.problem.measurements, known.final.gap)
+        if grown is None or abs(np.log(grown.growth / grown.sigma) - before) < SAME:
+            break
+        before, known = float(np.log(grown.growth / grown.sigma)), under(grown)
+        if best is not None and known.total >= best.total:
+            break
+        best = known
+    return best
 
 
 def held_against(noise: NoiseModel, fit: Fit) -> Fit:
