@@ -84,9 +84,10 @@ def fit(
         told = refuse_another_gravity(placed, readings)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
         beside = Blocks.of(calibrated, CATALOGUE).beside_loads(calibrated.unit)
-        told += refuse_pushed(calibrated, readings, *beside)
+        pushed = refuse_pushed(calibrated, readings, *beside)
+        pushed = pushed or tuple(remounted(calibrated, *beside))
         found = beside_lacking(with_model_form(calibrated))
-        by_row = remounted(found) or creeping(found, readings)
+        by_row = pushed or creeping(found, readings)
         return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
     if not waves:
         raise InputError(

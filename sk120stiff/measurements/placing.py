@@ -361,7 +361,8 @@ def _of_small_zeros(
     Raises:
         InputError: They do not: no placing of this robot gives these positions.
     """
-    zeros = small_zeros(cloud)
+    stated = readings.absolute is not None and not readings.absolute.fit_point
+    zeros = small_zeros(cloud, fit_marker=not stated)
     if zeros.small and zeros.rms <= FITS * spread:
         return zeros.sentence(readings.joint_names, found.rms)
     distance = cloud.left(found)

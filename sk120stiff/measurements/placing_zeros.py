@@ -49,18 +49,19 @@ class Zeros:
         )
 
 
-def small_zeros(cloud: Cloud) -> Zeros:
+def small_zeros(cloud: Cloud, *, fit_marker: bool) -> Zeros:
     """The zeros that leave least, small ones among those that leave as much."""
     turning = ~np.array(cloud.robot.prismatic)
     zero = np.zeros(cloud.a.shape[1])
     for _ in range(STEPS):
-        zero = zero + _step(replace(cloud, a=cloud.a + zero), zero, turning)
-    return Zeros(zero, replace(cloud, a=cloud.a + zero).placed(fit_marker=True)[0].rms)
+        zero = zero + _step(replace(cloud, a=cloud.a + zero), zero, turning, fit_marker)
+    moved = replace(cloud, a=cloud.a + zero)
+    return Zeros(zero, moved.placed(fit_marker=fit_marker)[0].rms)
 
 
-def _step(cloud: Cloud, zero: Array, turning: Mask) -> Array:
-    """(n,) what the zeros change, frames and markers free beside them."""
-    found, kept = cloud.placed(fit_marker=True)
+def _step(cloud: Cloud, zero: Array, turning: Mask, fit_marker: bool) -> Array:
+    """(n,) what the zeros change, frames free beside them, and markers unless they are stated."""
+    found, kept = cloud.placed(fit_marker=fit_marker)
     places = cloud.point + found.marker + found.apart[cloud.group]
     screws = cloud.robot.screws(cloud.a, point=places)
     gap = found.in_base(cloud.x, cloud.station) - screws.position
@@ -71,7 +72,8 @@ def _step(cloud: Cloud, zero: Array, turning: Mask) -> Array:
     frames = (motion[:, :, None] * stood[:, None, :, None]).reshape(len(gap), 3, -1)
     mounted = np.eye(len(found.apart))[cloud.group]
     marker = (screws.rotation[:, :, None] * mounted[:, None, :, None]).reshape(len(gap), 3, -1)
-    A = np.concatenate([slope, frames, marker], axis=2)[kept].reshape(3 * int(kept.sum()), -1)
+    free = [slope, frames, marker] if fit_marker else [slope, frames]
+    A = np.concatenate(free, axis=2)[kept].reshape(3 * int(kept.sum()), -1)
     noise = rms(gap[kept])
     held = np.zeros((int(turning.sum()), A.shape[1]))
     held[:, : len(held)] = noise / USUAL * np.eye(len(held))

@@ -116,7 +116,7 @@ def test_a_gain_is_what_the_gap_falls_by_at_poses_left_out():
         (Gain(2 * SHARE, 2 * SURE, 3), False),
     ],
 )
-def test_a_cause_isconfirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
+def test_a_cause_is_confirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
     assert confirmed(gained, linear()) is sure
 
 

@@ -10,6 +10,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain.absolute.run import explain_positions
+from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
 from sk120stiff.identify.absolute.pose_errors import Common, PoseWhitening, common_error
 from sk120stiff.identify.absolute.words import noise_of
@@ -89,6 +90,24 @@ def test_an_arm_whose_errors_are_no_draws_is_registered_as_one_marker_registers_
     assert shared.problem.common > 0.0
     sizes = [np.sqrt(np.mean(each.distances**2)) for each in (plain, shared)]
     assert sizes[1] < 1.25 * sizes[0]
+
+
+def test_where_nothing_is_named_the_arm_is_registered_by_least_squares(tmp_path: Path) -> None:
+    m = campaign(tmp_path, 3, 30, loads=(0.0,), markers="ABC")
+    model = Model(sk.load_robot(m.robot, base="base", tool="tool"))
+    answer = explain_positions(model, m, options=Options(only=("joint_offset:j1",)))
+    assert not answer.findings
+    left = np.sqrt(np.mean(answer.base.distances**2) / 3.0)
+    assert answer.steps[0].fit_rms == pytest.approx(left, rel=1e-3)
+    assert np.sqrt(np.mean(answer.final.distances**2) / 3.0) == pytest.approx(left, rel=1e-6)
+
+
+def test_the_first_row_of_the_gap_is_the_arm_registered_by_least_squares(tmp_path: Path) -> None:
+    m = campaign(tmp_path, 3, 30, loads=(0.0,), markers="ABC")
+    answer = explain_positions(Model(sk.load_robot(m.robot, base="base", tool="tool")), m)
+    assert answer.findings and answer.final.problem.common > 0.0
+    left = np.sqrt(np.mean(answer.base.distances**2) / 3.0)
+    assert answer.steps[0].fit_rms == pytest.approx(left, rel=0.02)
 
 
 def springs(found: Calibration) -> tuple[Array, Array]:

@@ -7,6 +7,10 @@ from pathlib import Path
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.effects import CATALOGUE
+from sk120stiff.errors import InputError
+from sk120stiff.explain.absolute.run import explain_positions
+from sk120stiff.identify.absolute.asked_for import Blocks
 from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.identify.absolute.remounted import remounted
 from sk120stiff.measurements import Measurements
@@ -15,7 +19,8 @@ from tests.absolute.shared import campaign
 
 def told(m: Measurements) -> list[str]:
     robot = sk.load_robot(m.robot, base="base", tool="tool")
-    return remounted(calibrate(sk.base_model(robot), m))
+    found = calibrate(sk.base_model(robot), m)
+    return remounted(found, *Blocks.of(found, CATALOGUE).beside_loads(found.unit))
 
 
 @pytest.mark.parametrize("seed", [3, 7])
@@ -23,6 +28,23 @@ def test_another_place_under_the_payload_is_told(tmp_path: Path, seed: int) -> N
     m = campaign(tmp_path, seed, 24, loads=(0.0, 30.0), markers="A", moved=(1e-3, 0.0, -5e-4))
     (said,) = told(m)
     assert "between lines 25 and 26" in said and "by 1.1 mm" in said and "column series" in said
+
+
+def test_a_second_payload_under_which_it_stayed_is_not_told(tmp_path: Path) -> None:
+    m = campaign(tmp_path, 3, 24, loads=(0.0, 15.0, 30.0), markers="A", moved=(1e-3, 0.0, -5e-4))
+    (said,) = told(m)
+    assert "between lines 25 and 26:" in said
+
+
+@pytest.mark.parametrize("seed", [3, 7])
+def test_explain_tells_it_before_a_name_stands_for_it(tmp_path: Path, seed: int) -> None:
+    m = campaign(tmp_path, seed, 24, loads=(0.0, 30.0), markers="AB", moved=(3e-4, 0.0, -2e-4))
+    model = sk.Model(sk.load_robot(m.robot, base="base", tool="tool"))
+    try:
+        said = explain_positions(model, m).final.notes
+    except InputError as stopped:
+        said = (str(stopped),)
+    assert any("arker looks moved" in note for note in said)
 
 
 @pytest.mark.parametrize("seed", [3, 7, 11])

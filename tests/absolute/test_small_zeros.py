@@ -10,6 +10,8 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
+from sk120stiff.explain.absolute import run
+from sk120stiff.explain.absolute.document import verdict_of_positions
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import place
@@ -27,6 +29,19 @@ def readings(folder: Path, zero: np.ndarray, scale: float = 1.0) -> Measurements
     return sk.read(write(folder, a, x, FIT)).with_joints(NAMES)
 
 
+def smoothly_off(data: Measurements) -> Measurements:
+    """By a millimetre, as no catalogue says."""
+    q, said = data.joints, data.absolute
+    assert said is not None and said.channels.position is not None
+    smooth = (
+        np.sin(1.3 * q[:, 3] + q[:, 4]),
+        np.cos(1.7 * q[:, 4] - q[:, 5]),
+        np.sin(q[:, 5] * q[:, 3]),
+    )
+    x = said.channels.position + 1e-3 * np.stack(smooth, axis=1)
+    return replace(data, absolute=replace(said, channels=replace(said.channels, position=x)))
+
+
 def test_zeros_that_bring_the_arm_there_are_told(tmp_path: Path) -> None:
     data = readings(tmp_path, OFF)
     found = place(sk.load_robot(data.robot, base="base", tool="tool"), data)
@@ -37,17 +52,28 @@ def test_zeros_that_bring_the_arm_there_are_told(tmp_path: Path) -> None:
 
 def test_they_are_named_beside_an_error_of_the_model(tmp_path: Path) -> None:
     """About the rigid arm, which is millimetres off, no name was likely: nothing was named."""
-    data = readings(tmp_path, OFF)
-    q, said = data.joints, data.absolute
-    assert said is not None and said.channels.position is not None
-    smooth = np.sin(1.3 * q[:, 3] + q[:, 4]), np.cos(1.7 * q[:, 4] - q[:, 5]), np.sin(q[:, 5])
-    x = said.channels.position + 1e-3 * np.stack(smooth, axis=1)
-    data = replace(data, absolute=replace(said, channels=replace(said.channels, position=x)))
+    data = smoothly_off(readings(tmp_path, OFF))
     model = sk.Model(sk.load_robot(data.robot, base="base", tool="tool"))
     answer = explain_positions(model, data)
     names = {item.effect.id: item.probability for item in answer.findings}
     assert {"joint_offset:j4", "joint_offset:j5"} <= set(names) and answer.verdict == "ambiguous"
     assert answer.steps[-1].heldout_rms < 0.15 * answer.steps[0].heldout_rms
+
+
+@pytest.mark.parametrize(("together", "verdict"), [(0.9, "ambiguous"), (0.5, "outside")])
+def test_names_that_stand_for_one_another_are_told_where_all_of_them_are_likely(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, together: float, verdict: str
+) -> None:
+    monkeypatch.setattr(run, "alternatives", lambda *_: ((), 0.3))
+    monkeypatch.setattr(run, "of_all", lambda *_: together)
+    data = smoothly_off(readings(tmp_path, 0.3 * OFF))
+    answer = explain_positions(sk.Model(sk.load_robot(data.robot, base="base", tool="tool")), data)
+    assert answer.verdict == verdict
+    told = any("None of these names is likely by itself" in n for n in answer.final.notes)
+    assert told == (verdict == "ambiguous")
+    if verdict == "outside":
+        assert answer.guess_heldout < 0.9 * answer.steps[-1].heldout_rms
+        assert "best_guess.yaml is off by" in verdict_of_positions(answer)["next_step"]
 
 
 def test_another_arm_is_refused_as_before(tmp_path: Path) -> None:

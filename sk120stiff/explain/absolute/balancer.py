@@ -27,7 +27,6 @@ GEARS = (1e-4, 3e-4)  # rad once per turn: two of three gears of robots (an arc 
 BALANCERS = (3e-4, 3e-3)  # rad: the same of torques that nobody stated, over springs of joints
 BALANCED = USUAL  # probability of such a torque at a joint that it could lift, beforehand
 LEAST, MOST, STEPS = 1e-6, 1e-1, 2000  # rad: sizes over which is summed, in even ratios
-UPRIGHT = 0.9  # cosine between an axis and gravity, from which on weight does not turn a joint
 ROUNDED = 0.01  # of the wave, its error at least
 
 
@@ -114,20 +113,18 @@ def _usual(sizes: Array, low: float, high: float) -> Array:
 def _behind(effect: Effect, final: Calibration) -> str | None:
     """Id of what may make the waves of an effect instead of the gear of its joint.
 
-    None where its gear surely makes them, or nothing can.
+    None where its gear surely makes them, or nothing can: what hangs beyond another joint goes with
+    the angles of both, and is no wave of one.
     """
     if not isinstance(effect, TransmissionError) or chance_of_gear(*_wave(effect, final)) >= SURE:
         return None
     if _torque(effect, final) is not None:
         return f"{GravityCompensator.name}:{effect.where}"
-    robot, cases = final.model.robot, final.problem.load_cases
-    if robot.mechanism().chain.weighs or not robot.gravity_in_base.any():
+    robot = final.model.robot
+    weighs = robot.mechanism().chain.weighs or not robot.gravity_in_base.any()
+    if weighs or effect.where not in GravityCompensator.places(robot)[:1]:
         return None
-    k = robot.actuated.index(effect.where)
-    axis = robot.screws(cases.a).jacobian[:, 3:, k]
-    down = robot.gravity_in_base / np.linalg.norm(robot.gravity_in_base)
-    upright = np.abs(axis @ down) >= UPRIGHT * np.linalg.norm(axis, axis=1)
-    return None if upright.all() else f"joint_springs:{effect.where}"
+    return f"joint_springs:{effect.where}"
 
 
 def _torque(effect: Effect, final: Calibration) -> float | None:

@@ -111,7 +111,8 @@ def explain_positions(
     tell("searching the catalogue", 0.2)
     seen = _about(base, readings, catalogue)
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
-    pushed = refuse_pushed(base, readings, *everything(linear))
+    pushed = refuse_pushed(seen, readings, *everything(linear))
+    pushed = pushed or tuple(remounted(seen, *everything(linear)))
     tell("fitting exactly", 0.5)
     final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):
@@ -152,7 +153,7 @@ def explain_positions(
             *pushed,
             *final.notes,
             *pounds(final),
-            *(remounted(final) or creeping(final, readings)),
+            *([] if pushed else creeping(final, readings)),
             *balancing(final),
             *changed(final, options.seed),
         ),

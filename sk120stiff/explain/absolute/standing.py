@@ -61,9 +61,10 @@ def _rivals(
         if score + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
         and score > nothing
     )
+    most = own + float(np.log(FALLEN))
     for c in rivals:
-        if others[c] > own and not confirmed(gain(linear, (*rest, c), c), linear):
-            others[c] = own + float(np.log(FALLEN))
+        if others[c] > most and not confirmed(gain(linear, (*rest, c), c), linear):
+            others[c] = most
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
     prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
     weight = np.exp(scores - scores.max())

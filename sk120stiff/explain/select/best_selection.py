@@ -40,35 +40,35 @@ def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, N
         measurements: Readings in use.
         under: Makes a selection under one noise model.
     """
-    tried = [under(noise) for noise in candidates(measurements)]
+    tried = [_as_it_grows(under(noise), under) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]
-    grown = _as_it_grows(found, under)
-    if grown is not None:
-        one_number_more = float(np.log(measurements.read.sum()))
-        found = (found, grown)[likelier([-found.total, -grown.total - one_number_more])]
     noise = found.base.problem.noise
     if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
 
 
-def _as_it_grows(found: Selection, under: Try) -> Selection | None:
-    """The best selection under noise that grows as what one leaves says, one after the other.
+def _as_it_grows(plain: Selection, under: Try) -> Selection:
+    """The selection, or that under noise that grows, where it explains more than a number more.
 
-    None where nothing hints at it: causes and noise are at their likeliest in turns.
+    Causes and noise are at their likeliest in turns. A share of the displacement counts in the
+    total as one number that was fitted.
     """
-    best: Selection | None = None
-    before, known = 0.0, found
+    readings = plain.base.problem.measurements
+    price = float(np.log(readings.read.sum()))
+    best, before, known = plain, -np.inf, plain
     for _ in range(TURNS):
         noise = known.base.problem.noise
         grown = growing(noise, known.final.problem.measurements, known.final.gap)
         if grown is None or abs(np.log(grown.growth / grown.sigma) - before) < SAME:
             break
-        before, known = float(np.log(grown.growth / grown.sigma)), under(grown)
-        if best is not None and known.total >= best.total:
+        before = float(np.log(grown.growth / grown.sigma))
+        known = under(grown)
+        known = replace(known, total=known.total + price)
+        if best is not plain and known.total >= best.total:
             break
         best = known
-    return best
+    return (plain, best)[likelier([-plain.total, -best.total])]
 
 
 def held_against(noise: NoiseModel, fit: Fit) -> Fit:

@@ -133,8 +133,9 @@ class PoseProblem(Problem):
         R, origin = instrument_frames(beside, cases)
         to_base = np.swapaxes(R, 1, 2)
         marker = np.einsum("nij,nj->ni", to_base, seen.position - origin)
-        own = cases.pose[:, None] == np.unique(cases.pose)
-        about = (own @ (own.T @ marker / own.sum(axis=0)[:, None]))[:, None]
+        pose = np.unique(cases.pose, return_inverse=True)[1]
+        sums = np.stack([np.bincount(pose, axis) for axis in marker.T], axis=1)
+        about = (sums / np.bincount(pose)[:, None])[pose, None]
         motion = np.zeros((cases.count, 6, 6))
         motion[:, :3, :3] = shift * R
         motion[:, :3, 3:] = (

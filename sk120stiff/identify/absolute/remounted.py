@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.errors import listed
 from sk120stiff.identify.absolute.calibrate import Calibration
@@ -16,13 +17,15 @@ from sk120stiff.identify.absolute.repeated import cells_of_numbers
 from sk120stiff.identify.absolute.steps import Steps
 
 
-def remounted(found: Calibration) -> list[str]:
+def remounted(found: Calibration, others: Array, prior: Array) -> list[str]:
     """That the marker looks to have moved where the payload was changed, and what to write.
 
     What drifts from row to row may look alike; the drift is held against it.
 
     Args:
-        found: A calibration, all of its causes included.
+        found: A calibration.
+        others, prior: Whitened columns (M, P) of all that may be at work beside it, and inverse
+            variances (P,) of their factors.
     """
     problem = found.problem
     said, measured = problem.said, problem.measurements
@@ -32,19 +35,17 @@ def remounted(found: Calibration) -> list[str]:
     when = in_order(measured)
     order = np.argsort(when)
     changes = (np.flatnonzero(np.diff(said.payload[order])) + 1).tolist()
-    own, known = found.jacobian[:, place], found.jacobian[:, ~found.at_bound]
+    own = found.jacobian[:, place]
     rows = problem.rows
     pose = cells_of_numbers(problem, measured.pose_index[:, None])
     joints = measured.joints[rows]
-    steps = Steps(
-        known, np.zeros(known.shape[1]), found.residual, own, when[rows], joints, pose, own
-    )
+    steps = Steps(others, prior, found.residual, own, when[rows], joints, pose, own)
     change = steps.at(changes)
     if not change.cuts:
         return []
     line = measured.line[order]
-    between = listed([f"{line[k - 1]} and {line[k]}" for k in changes])
-    sizes = steps.sizes(changes) * problem.scale[place]
+    between = listed([f"{line[k - 1]} and {line[k]}" for k in change.cuts])
+    sizes = steps.sizes(change.cuts) * problem.scale[place]
     moved = listed([f"{1e3 * np.linalg.norm(each):.2g} mm" for each in sizes])
     return [
         f"The marker looks moved on the tool (by {moved}) where the payload was changed, between "

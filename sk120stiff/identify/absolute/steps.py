@@ -107,18 +107,28 @@ class Steps:
         return Change()
 
     def at(self, times: Sequence[int]) -> Change:
-        """What changes at times that are known take off, if that is beyond doubt beside a creep."""
+        """Which changes at times that are known take off what is beyond doubt, and than a creep."""
         cuts = list(times)
         most = int(self.freedom / (ENOUGH * self.frame.shape[1]))
-        if not 0 < len(cuts) <= min(MOST, most):
+        if len(cuts) > min(MOST, most):
+            return Change()
+        while cuts and not self._each_counts(cuts):
+            less = {cut: [c for c in cuts if c != cut] for cut in cuts}
+            cuts = min(less.values(), key=self._left)
+        if not cuts:
             return Change()
         before, after = self._left([]), self._left(cuts)
-        steady = self._left([], creeping=[self.time])
-        odds = self._odds(min(before, steady), after, len(cuts))
         share = float(np.sqrt(after / before))
-        if odds <= BEYOND_DOUBT or share > TAKEN:
+        if share > TAKEN or after > self._left([], creeping=[self.time]):
             return Change()
+        odds = self._odds(before, after, len(cuts))
         return Change(tuple(cuts), share, False, odds, before - after)
+
+    def _each_counts(self, cuts: list[int]) -> bool:
+        """Does each of these changes bring more than is in doubt beside the others?"""
+        whole = self._left(cuts)
+        rest = (self._left([c for c in cuts if c != cut]) for cut in cuts)
+        return all(self._odds(left, whole) > BEYOND_DOUBT for left in rest)
 
     @cached_property
     def by_places(self) -> float:

@@ -36,6 +36,7 @@ FEWEST = 6  # orientations that tell how they are meant
 SAME = 1e-6  # rad; ways that differ by less at every pose are one
 APART = 5.0  # times farther off the arm the next way of reading them has to be
 QUARTERS = [*Rotation.create_group("O")]  # axes that are exchanged or of the other sign
+TURNED_ROUND = "of the tracker in axes of the target"
 KNOWN = {
     "zyx moved": "KUKA's A, B, C",
     "xyz fixed": "FANUC's W, P, R",
@@ -202,7 +203,13 @@ def _tried(
         sits = mounting(tool, read[seen], group, count)
         off = float(np.median(((tool * sits[group]).inv() * read[seen]).magnitude()))
         found.append(_Read(off, way, read, float(sits.magnitude().max()), axes))
-    return sorted(found, key=lambda each: (round(each.off, 9), each.axes.magnitude()))
+    return sorted(found, key=_oddness)
+
+
+def _oddness(each: _Read) -> tuple[float, bool, bool, float]:
+    """How far off the arm; of ways that come to the same, the usual ones first."""
+    usual = any(name in each.way for name in KNOWN.values())
+    return round(each.off, 7), TURNED_ROUND in each.way, not usual, each.axes.magnitude()
 
 
 def _same(one: _Read, other: _Read) -> bool:
@@ -250,4 +257,4 @@ def _ways(values: Array) -> Iterator[tuple[str, Rotation]]:
                     )
                 )
     yield from plainly
-    yield from ((f"{way}, of the tracker in axes of the target", r.inv()) for way, r in plainly)
+    yield from ((f"{way}, {TURNED_ROUND}", r.inv()) for way, r in plainly)
