@@ -103,11 +103,11 @@ def test_where_nothing_is_named_the_arm_is_registered_by_least_squares(tmp_path:
 
 
 def test_the_first_row_of_the_gap_is_the_arm_registered_by_least_squares(tmp_path: Path) -> None:
-    m = campaign(tmp_path, 3, 30, loads=(0.0,), markers="ABC")
+    m = campaign(tmp_path, 3, 30, loads=(0.0,), markers="ABC", off=2 * OFF)
     answer = explain_positions(Model(sk.load_robot(m.robot, base="base", tool="tool")), m)
     assert answer.findings and answer.final.problem.common > 0.0
     left = np.sqrt(np.mean(answer.base.distances**2) / 3.0)
-    assert answer.steps[0].fit_rms == pytest.approx(left, rel=0.02)
+    assert answer.steps[0].fit_rms == pytest.approx(left, rel=0.01)
 
 
 def springs(found: Calibration) -> tuple[Array, Array]:

@@ -56,8 +56,9 @@ def test_they_are_named_beside_an_error_of_the_model(tmp_path: Path) -> None:
     model = sk.Model(sk.load_robot(data.robot, base="base", tool="tool"))
     answer = explain_positions(model, data)
     names = {item.effect.id: item.probability for item in answer.findings}
-    assert {"joint_offset:j4", "joint_offset:j5"} <= set(names) and answer.verdict == "ambiguous"
-    assert answer.steps[-1].heldout_rms < 0.15 * answer.steps[0].heldout_rms
+    assert {f"joint_offset:j{k}" for k in (2, 3, 4, 5)} <= set(names)
+    assert answer.verdict == "ambiguous"
+    assert answer.steps[-1].heldout_rms < 0.09 * answer.steps[0].heldout_rms
 
 
 @pytest.mark.parametrize(("together", "verdict"), [(0.9, "ambiguous"), (0.5, "outside")])
