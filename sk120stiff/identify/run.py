@@ -16,7 +16,7 @@ from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
 from sk120stiff.identify.absolute.lacking import beside_lacking
 from sk120stiff.identify.absolute.pushed import refuse_pushed
-from sk120stiff.identify.absolute.remounted import remounted
+from sk120stiff.identify.absolute.remounted import refuse_remounted
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import known_calibration
 from sk120stiff.identify.estimate import fit_displacements
@@ -85,7 +85,7 @@ def fit(
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
         beside = Blocks.of(calibrated, CATALOGUE).beside_loads(calibrated.unit)
         pushed = refuse_pushed(calibrated, readings, *beside)
-        pushed = pushed or tuple(remounted(calibrated, *beside))
+        pushed = pushed or refuse_remounted(calibrated, readings, *beside)
         found = beside_lacking(with_model_form(calibrated))
         by_row = pushed or creeping(found, readings)
         return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.laying import Clouds, Laid, lay
 from sk120stiff.measurements.registration import Registration, registration_of
@@ -35,6 +35,12 @@ class Cloud:
     marker: NDArray[np.str_]
     group: Index
     station: Index
+
+    @property
+    def spread(self) -> float:
+        """Distance of the positions from their middle, rms, of each station by itself [m]."""
+        seen = [self.x[self.station == own] for own in np.unique(self.station)]
+        return rms(np.concatenate([np.linalg.norm(x - x.mean(axis=0), axis=1) for x in seen]))
 
     def placed(self, *, fit_marker: bool, until: float = 0.0) -> tuple[Registration, Mask]:
         """The best placing, and the rows that it rests on (N,); `until`: see `lay`.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index, Mask, rms
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.cloud import FEWEST, Cloud
@@ -98,7 +98,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         robot, readings.joints[whole], x[whole], said.point[whole], names, one, stood[whole]
     )
     found, kept = cloud.placed(fit_marker=True)
-    spread = _spread(cloud)
+    spread = cloud.spread
     if free and len(labels) > 1 and found.rms > SUSPECT * spread:
         # No one shift of all markers will do: exchanged, or each somewhere of its own.
         _refuse_exchange(cloud, found, readings)
@@ -162,12 +162,6 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         notes=tuple(notes),
         far_off=far_off,
     )
-
-
-def _spread(cloud: Cloud) -> float:
-    """Distance of the positions from their middle, rms, of each station by itself [m]."""
-    seen = [cloud.x[cloud.station == own] for own in np.unique(cloud.station)]
-    return rms(np.concatenate([np.linalg.norm(x - x.mean(axis=0), axis=1) for x in seen]))
 
 
 def stands_for_all(stations: tuple[str, ...], stood: Index, readings: Measurements) -> None:

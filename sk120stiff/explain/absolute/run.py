@@ -58,7 +58,7 @@ from sk120stiff.identify.absolute.remainder import (
     chance_of_noise,
     left_beyond_noise,
 )
-from sk120stiff.identify.absolute.remounted import remounted
+from sk120stiff.identify.absolute.remounted import refuse_remounted
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -112,7 +112,7 @@ def explain_positions(
     seen = _about(base, readings, catalogue)
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
     pushed = refuse_pushed(seen, readings, *everything(linear))
-    pushed = pushed or tuple(remounted(seen, *everything(linear)))
+    pushed = pushed or refuse_remounted(seen, readings, *everything(linear))
     tell("fitting exactly", 0.5)
     final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):

@@ -62,7 +62,7 @@ def refuse_pushed(
     problem = found.problem
     if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
         return ()
-    when, a = in_order(problem.measurements), problem.measurements.joints
+    when, a = _when(problem.measurements), problem.measurements.joints
     frames = {
         PUSHED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, Viewpoint)],
         SLIPPED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)],
@@ -149,7 +149,7 @@ def _slipped_joint(
     )
 
 
-def in_order(readings: Measurements) -> Index:
+def _when(readings: Measurements) -> Index:
     """(N,) place of each row in the order in which they were read, which is that of the file."""
     clock = readings.order if readings.order is not None else readings.time
     rows = np.arange(readings.n_readings) if clock is None else clock

@@ -10,46 +10,59 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.geometry import ToolOffset
-from sk120stiff.errors import listed
+from sk120stiff.errors import InputError, listed, two_digits
 from sk120stiff.identify.absolute.calibrate import Calibration
-from sk120stiff.identify.absolute.pushed import in_order
 from sk120stiff.identify.absolute.repeated import cells_of_numbers
 from sk120stiff.identify.absolute.steps import Steps
+from sk120stiff.measurements import Measurements
 
 
-def remounted(found: Calibration, others: Array, prior: Array) -> list[str]:
-    """That the marker looks to have moved where the payload was changed, and what to write.
+def refuse_remounted(
+    found: Calibration, readings: Measurements, others: Array, prior: Array
+) -> tuple[str, ...]:
+    """Stop where the marker moved with the payload, and the file tells nothing of it.
 
-    What drifts from row to row may look alike; the drift is held against it.
+    Where an error of the model might still be mistaken for it, a sentence says what it looks like.
+
+    Under a heavier payload it sits elsewhere then, whatever the order of the rows.
 
     Args:
         found: A calibration.
+        readings: Where it comes from.
         others, prior: Whitened columns (M, P) of all that may be at work beside it, and inverse
             variances (P,) of their factors.
+
+    Raises:
+        InputError: Another place takes off half the square of what all else leaves.
     """
     problem = found.problem
     said, measured = problem.said, problem.measurements
     place = [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)]
     if said.series is not None or not place or "position" not in problem.channels.present:
-        return []
-    when = in_order(measured)
-    order = np.argsort(when)
-    changes = (np.flatnonzero(np.diff(said.payload[order])) + 1).tolist()
-    own = found.jacobian[:, place]
-    rows = problem.rows
+        return ()
+    masses, heavier = np.unique(said.payload, return_inverse=True)
+    own, rows = found.jacobian[:, place], problem.rows
     pose = cells_of_numbers(problem, measured.pose_index[:, None])
     joints = measured.joints[rows]
-    steps = Steps(others, prior, found.residual, own, when[rows], joints, pose, own)
-    change = steps.at(changes)
+    steps = Steps(others, prior, found.residual, own, heavier[rows], joints, pose, own)
+    change = steps.at(range(1, len(masses)))
     if not change.cuts:
-        return []
-    line = measured.line[order]
-    between = listed([f"{line[k - 1]} and {line[k]}" for k in change.cuts])
+        return ()
     sizes = steps.sizes(change.cuts) * problem.scale[place]
-    moved = listed([f"{1e3 * np.linalg.norm(each):.2g} mm" for each in sizes])
-    return [
-        f"The marker looks moved on the tool (by {moved}) where the payload was changed, between "
-        f"lines {between}: with another place from there on the gap falls to "
-        f"{100.0 * change.share:.0f} % of it, and springs are others. Add a column series with a "
-        "label for each time between, as a and b, if it may have been; one label for all if not."
-    ]
+    moved = listed(
+        [
+            f"by {1e3 * np.linalg.norm(size):.2g} mm from {masses[k]:g} kg on"
+            for k, size in zip(change.cuts, sizes, strict=True)
+        ]
+    )
+    looks = (
+        f"the marker looks moved on the tool with the payload, {moved}: with another place there "
+        f"the gap falls to {two_digits(100.0 * change.share)} % of what all else leaves"
+    )
+    remedy = (
+        "Add a column series with a label for each time that the payload was changed, as a and b. "
+        "Or one label for all, if nothing was moved."
+    )
+    if change.sure:
+        raise InputError(looks, where=readings.place, remedy=remedy)
+    return (f"T{looks[1:]}. {remedy}",)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import linalg
 
-from sk120stiff.arrays import Array, Index, lengths_of
+from sk120stiff.arrays import Array, Index, Mask, lengths_of
 from sk120stiff.effects.reading_drift import BRIEF, COURSES
 from sk120stiff.identify.uncertainty.laid_out import seen_directions
 
@@ -26,6 +26,7 @@ SPLITS = 400  # rows between which it is looked for first
 MOST = 4  # pushes of one campaign
 ENOUGH = 4  # times as many numbers to spare as a push would take up: fewer are fitted by anything
 WORTH = 0.05  # of the gap: a push that takes off less is not spoken of
+FAR = 6.0  # times what readings usually leave, beyond which a single one is wild
 TAKEN = 0.85  # of the gap, below which a change at a known time is spoken of
 STURDY = 5.0  # times the odds against courses of time, since errors of a model go together
 CLEARER = 3.0  # times what a border in a joint's values takes off, which an error of a model may
@@ -75,6 +76,28 @@ class Steps:
 
     @cached_property
     def found(self) -> Change:
+        """Where a place changed, wild readings left out: see `among`."""
+        wild = self._wild
+        if not wild.any():
+            return self.among()
+        kept = ~wild
+        return replace(
+            self, columns=self.columns[kept], gap=self.gap[kept], frame=self.frame[kept],
+            when=self.when[kept], joints=self.joints[kept],
+            pose=np.unique(self.pose[kept], return_inverse=True)[1], creeps=self.creeps[kept],
+        ).among()  # fmt: skip
+
+    @property
+    def _wild(self) -> Mask:
+        """(M,) numbers of single readings far off what all others leave: no place does that."""
+        left, count = self._beside([]).left, np.bincount(self.when)
+        size = np.sqrt(np.bincount(self.when, left**2) / np.maximum(count, 1))
+        far = size > FAR * float(np.median(size[count > 0]))
+        beside = np.convolve(far, [1, 1, 1], mode="same")
+        alone = far & (beside < SIDE // 2)
+        return np.asarray(alone[self.when] if 0 < alone.sum() < SIDE else np.zeros(len(left), bool))
+
+    def among(self) -> Change:
         """Where a place changed; beyond doubt where half is taken off, of what evenly creeping
         would leave too, and of what a course of time would that ends, if several are its stairs.
 
@@ -93,6 +116,8 @@ class Steps:
         if not cuts:
             return Change()
         cuts = [self._nearest(cuts, k) for k in range(len(cuts))]
+        if min(np.diff(cuts), default=SIDE) < SIDE:
+            return Change()  # a wild row or a few, not a place
         before, after = self._left([]), self._left(cuts)
         share = float(np.sqrt(after / before))
         odds = self._odds(before, after, len(cuts))
@@ -107,7 +132,7 @@ class Steps:
         return Change()
 
     def at(self, times: Sequence[int]) -> Change:
-        """Which changes at times that are known take off what is beyond doubt, and than a creep."""
+        """Which changes at times that are known take off what is beyond doubt."""
         cuts = list(times)
         most = int(self.freedom / (ENOUGH * self.frame.shape[1]))
         if len(cuts) > min(MOST, most):
@@ -119,10 +144,10 @@ class Steps:
             return Change()
         before, after = self._left([]), self._left(cuts)
         share = float(np.sqrt(after / before))
-        if share > TAKEN or after > self._left([], creeping=[self.time]):
+        if share > TAKEN:
             return Change()
         odds = self._odds(before, after, len(cuts))
-        return Change(tuple(cuts), share, False, odds, before - after)
+        return Change(tuple(cuts), share, after <= HALF * before, odds, before - after)
 
     def _each_counts(self, cuts: list[int]) -> bool:
         """Does each of these changes bring more than is in doubt beside the others?"""
