@@ -63,6 +63,17 @@ def test_a_pushed_tracker_is_told_with_the_lines(verb, noise: str, tmp_path: Pat
     assert "Add a column station" in told.value.remedy
 
 
+@pytest.mark.parametrize("verb", [fit, explain])
+def test_a_wild_reading_is_no_push(verb, tmp_path: Path) -> None:
+    """By less than the rigid arm leaves, so that placing does not set it aside."""
+    x = X.copy()
+    x[33] += np.array([2e-3, -1.5e-3, 1e-3])
+    assert verb(read(tmp_path, x, A)) is not None
+    x = pushed(x, np.arange(COUNT) >= 60)
+    with pytest.raises(InputError, match="the tracker looks moved between lines 61 and 62"):
+        verb(read(tmp_path, x, A))
+
+
 def test_with_stations_the_arm_comes_out(tmp_path: Path) -> None:
     cells = ["before" if k < 37 else "after" for k in range(COUNT)]
     path = read(tmp_path, pushed(X, np.arange(COUNT) >= 37), A, more=",station", cells=cells)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, entry_price
+from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, confirmed, entry_price, gain
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.standing import standing
 from sk120stiff.explain.advise.detectable import length_named
 from sk120stiff.explain.findings import Detectable
+from sk120stiff.explain.priors import FALLEN
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED = 2.0 * (SURE + 0.84)
+UNLIKELY = 0.05  # probability below which nobody asks poses left out
 LEAST = 0.01  # probability below which nobody is told
 
 
@@ -45,8 +47,9 @@ def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
 def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
     """Name → probability of its being at work, of all above `LEAST`.
 
-    Named causes share theirs with what explains as much; others stand beside the named ones. What
-    fitted and was not confirmed by poses left out is not counted.
+    Named causes share theirs with what explains as much; others stand beside the named ones, and
+    are the less likely where poses left out do not confirm them. What fitted and was not confirmed
+    by these is not counted.
     """
     out: dict[str, float] = {}
     for e in found.order:
@@ -59,5 +62,9 @@ def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
         if e in found.dropped or effect.id in out:
             continue
         odds = linear.score((*found.order, e), noise) - now - entry_price(linear, e)
-        out[effect.id] = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
+        share = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
+        wider = (*found.order, e)
+        if share > UNLIKELY and not confirmed(gain(linear, wider, e), linear):
+            share *= FALLEN
+        out[effect.id] = share
     return {name: p for name, p in out.items() if p >= LEAST}
