@@ -28,6 +28,11 @@ from sk120stiff.model.predicted import (
     unknown_reasons,
 )
 
+SINGLE = (  # columns of single numbers, what read them, and in what unit
+    ("gap_d[um]", "gauges", "um"),
+    ("gap_l[um]", "wires", "um"),
+    ("gap_inc[urad]", "levels", "urad"),
+)
 LISTED = 40  # rows that people are shown
 
 
@@ -103,11 +108,13 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
         "out": out,
     }
     parts: list[object] = [] if moved is None else [moved.sentence()]
-    gauge = np.array(columns.get("gap_d[um]", []), dtype=float)
-    if gauge.size and np.isfinite(gauge[readings.use]).any():
-        gauge = gauge[readings.use & np.isfinite(gauge)]
-        document["rms_um"] = rms(gauge)
-        parts.append(f"Gap over {len(gauge)} readings of gauges: {rms(gauge):.4g} µm rms.")
+    for column, what, unit in SINGLE:
+        read = np.array(columns.get(column, []), dtype=float)
+        read = read[readings.use & np.isfinite(read)] if read.size else read
+        if read.size:
+            document[f"rms_{unit}"] = rms(read)
+            shown = unit.replace("u", "µ", 1)
+            parts.append(f"Gap over {len(read)} readings of {what}: {rms(read):.4g} {shown} rms.")
     gap = 1e6 * predicted.gap(readings)[readings.use]
     gap = gap[np.isfinite(gap).all(axis=1)]
     if len(gap):

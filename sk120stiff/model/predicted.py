@@ -12,6 +12,14 @@ from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
 from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.channels import inclined
+from sk120stiff.model.channel_columns import (
+    AXES,
+    of_gauges,
+    of_turns,
+    of_wires_and_levels,
+    vectors_read,
+)
 from sk120stiff.model.counted_from import warn_of_references
 from sk120stiff.model.holding import held_loads
 from sk120stiff.model.model import Model
@@ -36,6 +44,7 @@ class Predicted:
             tool's or a target's, in the axes of the instrument; None where displacements were read.
         turn: (N, 3) rotation vector of the tool from its axes without load to those with it, axes
             of the displacements [rad]; None where none was read.
+        inclination: (N,) of the level above the horizon [rad]; None where none was read.
     """
 
     displacement: Array
@@ -45,6 +54,7 @@ class Predicted:
     position: Array | None = None
     rotation: Array | None = None
     turn: Array | None = None
+    inclination: Array | None = None
 
     def __repr__(self) -> str:
         if self.position is not None:
@@ -88,7 +98,7 @@ class Predicted:
             >>> said.gap(readings).shape
             (15, 3)
         """
-        read = _read(measurements)
+        read = vectors_read(measurements)
         said = self.displacement if self.position is None else self.position
         return np.full_like(said, np.nan) if read is None else np.asarray(read - said)
 
@@ -195,11 +205,15 @@ def predict_channels(model: Model, measurements: Measurements) -> Predicted:
         return Predicted(went.displacement, std, left, blame, turn=turn)
     seen = read_poses(model, load_cases, derivative=known is not None)
     moved = model.predict(load_cases)
+    level, down = None if said is None else said.channels.level, model.robot.gravity_in_base
+    leans = None
+    if level is not None and down.any():
+        leans = inclined(level, seen.standing, seen.turning, down / np.linalg.norm(down))[0]
     if known is None:
-        return Predicted(moved, position=seen.position, rotation=seen.rotation)
+        return Predicted(moved, None, None, (), seen.position, seen.rotation, None, leans)
     std, blame = _spread_of(known, model.names, seen.columns[:, :3])
     left = remainder_std(known, load_cases)
-    return Predicted(moved, std, left, blame, seen.position, seen.rotation)
+    return Predicted(moved, std, left, blame, seen.position, seen.rotation, None, leans)
 
 
 def predict_with_uncertainty(model: Model, load_cases: LoadCases) -> Predicted:
@@ -253,7 +267,6 @@ def blamed(known: Uncertainty, names: tuple[str, ...], derivative: Array) -> tup
     )
 
 
-AXES = "xyz"
 UNHELD = "no static equilibrium: the springs cannot hold this load"
 
 
@@ -304,13 +317,15 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
         if std is not None:
             told = np.where(np.isfinite(std), std, np.nan) * 1e6
             columns |= {f"std_{name}_{axis}[um]": told[:, k] for k, axis in enumerate(AXES)}
-    read = _read(readings)
+    read = vectors_read(readings)
     if read is not None:
         for k, axis in enumerate(AXES):
             columns[f"{of}{axis}[mm]"] = read[:, k] * 1e3
         for k, axis in enumerate(AXES):
             columns[f"gap_{axis}[um]"] = (read - said)[:, k] * 1e6
-    columns |= _of_turns(readings, predicted) | _of_gauges(readings, predicted.displacement)
+    columns |= of_turns(readings, predicted.turn, predicted.rotation)
+    columns |= of_gauges(readings, predicted.displacement)
+    columns |= of_wires_and_levels(readings, predicted.position, predicted.inclination)
     columns["use"] = readings.use.astype(int)
     missing = ~np.isfinite(predicted.displacement).all(axis=1)
     if missing.any():
@@ -319,50 +334,6 @@ def prediction_table(readings: Measurements, predicted: Predicted) -> Columns:
     if any(reasons):
         columns["std_reason"] = reasons
     return {name: np.asarray(cells, dtype=object).tolist() for name, cells in columns.items()}
-
-
-def _read(readings: Measurements) -> Array | None:
-    """(N, 3) displacements as read, else positions [m]; None where neither was."""
-    if readings.absolute is None:
-        return readings.displacement
-    channels = readings.absolute.channels
-    return channels.position if channels.displacement is None else channels.displacement
-
-
-def _of_turns(readings: Measurements, predicted: Predicted) -> dict[str, Array]:
-    """Rotation vectors of the axes that are read, axes of the instrument; nothing where none was.
-
-    The gap is the rotation from the predicted axes to those that were read. Of what a load turned
-    both are those of the turns.
-    """
-    turn = None if readings.absolute is None else readings.absolute.channels.turn
-    if turn is not None and predicted.turn is not None:
-        said, gap = predicted.turn, turn - predicted.turn
-        return {f"predicted_dr{axis}[mrad]": said[:, k] * 1e3 for k, axis in enumerate(AXES)} | {
-            f"gap_dr{axis}[urad]": gap[:, k] * 1e6 for k, axis in enumerate(AXES)
-        }
-    read = None if readings.absolute is None else readings.absolute.channels.rotation
-    if read is None or predicted.rotation is None:
-        return {}
-    said, gap = rotation_vector(predicted.rotation), np.full((len(read), 3), np.nan)
-    known = np.isfinite(read).all(axis=(1, 2)) & np.isfinite(said).all(axis=1)
-    gap[known] = rotation_vector(read[known] @ np.swapaxes(predicted.rotation[known], 1, 2))
-    return {f"predicted_r{axis}[rad]": said[:, k] for k, axis in enumerate(AXES)} | {
-        f"gap_r{axis}[urad]": gap[:, k] * 1e6 for k, axis in enumerate(AXES)
-    }
-
-
-def _of_gauges(readings: Measurements, moved: Array) -> dict[str, Array]:
-    """Displacement (N, 3) and reading along the directions of gauges; nothing where none was read.
-
-    Cells of rows that no gauge read are empty.
-    """
-    channels = None if readings.absolute is None else readings.absolute.channels
-    if channels is None or channels.shift is None or channels.along is None:
-        return {}
-    d, along = channels.shift, np.einsum("ni,ni->n", channels.along, moved)
-    said = np.where(np.isfinite(d), along, np.nan)
-    return {"predicted_d[mm]": said * 1e3, "d[mm]": d * 1e3, "gap_d[um]": (d - along) * 1e6}
 
 
 def unknown_reasons(predicted: Predicted) -> list[str]:

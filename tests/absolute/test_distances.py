@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.words import ABOUT, unseen
-from tests.absolute.arm import Array, errors, poses, tracked, write
+from sk120stiff.model import predict
+from sk120stiff.model.predicted import prediction_table
+from tests.absolute.arm import NAMES, Array, errors, poses, tracked, write
 from tests.absolute.test_forms import FINE, FINELY, agrees, calibrated, rows
 
 A = poses(70, 2)
@@ -81,3 +84,14 @@ def test_a_turn_about_one_point_or_two_changes_no_distance(count: int, tmp_path:
     values[frame[3:]] = (turn * Rotation.from_rotvec(values[frame[3:]])).as_rotvec()
     change = np.abs(found.problem.channel_gap(values)[0] - before).max()
     assert change < 1e-8 if count < 3 else change > 1e-2
+
+
+def test_a_prediction_tells_the_gap_of_wires(tmp_path: Path) -> None:
+    path = measured(tmp_path, POINTS)
+    found, data = calibrated(path), sk.read(path)
+    columns = prediction_table(data.with_joints(NAMES), predict(found.model, data))
+    gap = np.array(columns["gap_l[um]"], dtype=float)
+    left = found.problem.of_channels.undo(found.residual)
+    assert np.sqrt(np.mean(gap**2)) == pytest.approx(1e6 * np.sqrt(np.mean(left**2)), rel=1e-3)
+    read, said = (np.array(columns[name], dtype=float) for name in ("l[mm]", "predicted_l[mm]"))
+    assert np.allclose(1e3 * (read - said), gap)

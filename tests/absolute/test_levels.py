@@ -9,6 +9,8 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.identify.absolute.calibrate import calibrate
+from sk120stiff.model import predict
+from sk120stiff.model.predicted import prediction_table
 from tests.absolute.arm import Array, errors, poses, write
 
 A = np.repeat(poses(30, 5), 2, axis=0)
@@ -84,3 +86,14 @@ def test_what_is_right_is_kept(tmp_path: Path, right: dict) -> None:
     assert model is not None
     found = calibrate(model, data.with_joints(robot.actuated), geometry=False, waves=False)
     assert found.wild.sum() == right.get("wild", 0)
+
+
+def test_a_prediction_tells_the_gap_of_levels(tmp_path: Path) -> None:
+    data = levelled(tmp_path)
+    model = sk.base_model(robot_of(data))
+    assert model is not None
+    found = sk.fit(model, data)
+    columns = prediction_table(data, predict(found.model, data))
+    gap = np.array(columns["gap_inc[urad]"], dtype=float)
+    assert np.sqrt(np.mean(gap**2)) < 30.0  # 20 µrad of noise
+    assert np.allclose(gap * 1e-6, found.problem.of_channels.undo(found.residual), atol=1e-9)
