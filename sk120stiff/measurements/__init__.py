@@ -3,7 +3,6 @@
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.growing import growing
 from sk120stiff.measurements.line_of_sight import may_have_rays, seen_from
 from sk120stiff.measurements.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise import NoiseModel, candidates, decided
@@ -25,7 +24,6 @@ __all__ = [
     "Whitener",
     "candidates",
     "decided",
-    "growing",
     "may_have_rays",
     "read_measurements",
     "seen_from",

@@ -10,8 +10,7 @@ An instrument that is sharper along its ray than across it makes the errors of o
 together; such readings are whitened along the ray and across it (`line_of_sight.py`).
 
 What was stated is the yardstick: no scatter overrules it. Noise that grows with the displacement
-was stated, or shows in true repeats. Where nothing was stated, `explain` holds it against causes
-that grow with the load (`growing.py`).
+was stated, or shows in true repeats; nothing else tells it from a cause that grows with the load.
 """
 
 from __future__ import annotations
@@ -256,10 +255,6 @@ def decided(noise: NoiseModel, measurements: Measurements) -> tuple[str, ...]:
         said.append(
             f"Repeats scatter the more the larger the displacement: "
             f"{two_digits(noise.growth * 100)} % of it is added to the uncertainty, in squares."
-            if noise.known
-            else "No uncertainty is stated; that readings are off by a share of the displacement, "
-            "each by its own, explains them best, as where forces differ a little from those "
-            "written. Write 'noise: {sigma: ..., unit: ...}' if you know how large the noise is."
         )
     return tuple(said)
 

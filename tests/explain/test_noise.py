@@ -10,7 +10,6 @@ from sk120stiff.explain import Explanation, verdict_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.identify.checks.yardstick import scatter
-from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import NoiseStatement
 from sk120stiff.show.stories.verdicts import lead_of, title_of
 from tests.explain.readings import SIGMA, answered, hidden
@@ -66,20 +65,6 @@ def test_a_statement_exceeded_eight_times_is_a_finding(springs):
     answer = answered(springs, understated(100, 9.0))
     assert answer.verdict == "outside"
     assert "times the stated uncertainty" in " ".join(answer.noise_reasons)
-
-
-def test_forces_that_differ_from_those_written_are_noise_that_grows(springs):
-    """By hand and by cable; a constant σ makes a cause of what the largest readings have."""
-    readings = hidden(stated=False, poses=20, loads=6)
-    rng = np.random.default_rng(5)
-    off = rng.normal(scale=0.03, size=readings.displacement.shape)
-    size = np.linalg.norm(readings.displacement, axis=1)[:, None]
-    answer = answered(springs, replace(readings, displacement=readings.displacement + off * size))
-    assert answer.verdict == "none"
-    scale = answer.final.noise_factor
-    assert answer.noise.growth * scale == pytest.approx(0.03, rel=0.3)
-    assert "off by a share of the displacement" in " ".join(answer.noise_reasons)
-    assert "% of its displacement besides" in noise_sentence(answer.final)
 
 
 def test_too_few_readings_for_a_scatter_still_tell_noise_from_what_poses_have(springs):

@@ -1,8 +1,7 @@
 """The selection that explains most, and what it is held against.
 
 What was stated of the noise, or found from repeats, stays the yardstick of every fit, whatever
-else a search took into account (`beside_form.py`). Where nothing was, noise that grows with the
-displacement is held against causes of the gap: what a selection leaves over says how much.
+else a search took into account (`beside_form.py`).
 
 A gap that is rounding, because the readings were computed, has no cause: the search is made again
 with the finest noise that instruments have, and finds none.
@@ -19,10 +18,8 @@ from sk120stiff.effects import Effect
 from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
 from sk120stiff.identify.solving import widened_as
-from sk120stiff.measurements import Measurements, NoiseModel, candidates, growing
+from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.measurements.noise import FINEST
-
-TURNS, SAME = 4, 0.2  # of causes and noise at most, and change of ln(growth/σ) that is none
 
 
 class Try(Protocol):
@@ -40,35 +37,12 @@ def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, N
         measurements: Readings in use.
         under: Makes a selection under one noise model.
     """
-    tried = [_as_it_grows(under(noise), under) for noise in candidates(measurements)]
+    tried = [under(noise) for noise in candidates(measurements)]
     found = tried[likelier([-each.total for each in tried])]
     noise = found.base.problem.noise
     if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
-
-
-def _as_it_grows(plain: Selection, under: Try) -> Selection:
-    """The selection, or that under noise that grows, where it explains more than a number more.
-
-    Causes and noise are at their likeliest in turns. A share of the displacement counts in the
-    total as one number that was fitted.
-    """
-    readings = plain.base.problem.measurements
-    price = float(np.log(readings.read.sum()))
-    best, before, known = plain, -np.inf, plain
-    for _ in range(TURNS):
-        noise = known.base.problem.noise
-        grown = growing(noise, known.final.problem.measurements, known.final.gap)
-        if grown is None or abs(np.log(grown.growth / grown.sigma) - before) < SAME:
-            break
-        before = float(np.log(grown.growth / grown.sigma))
-        known = under(grown)
-        known = replace(known, total=known.total + price)
-        if best is not plain and known.total >= best.total:
-            break
-        best = known
-    return (plain, best)[likelier([-plain.total, -best.total])]
 
 
 def held_against(noise: NoiseModel, fit: Fit) -> Fit:
