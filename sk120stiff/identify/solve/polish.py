@@ -28,7 +28,6 @@ FALLEN = 1e-4  # by more than this share of what one reading adds to it
 FINE = 1e-12  # relative step at which nothing is left to gain
 LEARNED = 1e-6  # relative step below which rounding hides the curvature
 SOUND = 0.1  # least curvature over that of Gauss and Newton for which the learned one is trusted
-TRIES, SHRUNK = 12, 0.1  # ever shorter steps, each at least this share of the one before
 LONGER = 4.0  # times the last step that led downhill, in shares of Newton's, the next is tried
 GRAIN = 1e-9  # relative rounding of a sum of squares of whitened gaps
 FAINT = 1e-10  # change of the predictions, in units of their noise, that is below all rounding
@@ -106,11 +105,9 @@ def polish(
         last = size
         reach, hits = _until_bound(x, step, bounds)
         if reach > 0.0:
-            taken = share * reach * step
-            slope = 2.0 * float(residual @ (jacobian @ taken))
-            new, found, shorter, tries = _descend(evaluate, x, taken, residual, slope, bounds)
+            new, found, tries = _descend(evaluate, x, share * reach * step, residual, bounds)
             count += tries
-            share = min(LONGER * share * shorter, 1.0) if found is not None else 1.0
+            share = min(LONGER * share * 0.5 ** (tries - 1), 1.0) if found is not None else 1.0
             if found is None and curvature.any():
                 curvature[:] = 0.0  # what was learned misleads here
                 continue
@@ -184,32 +181,20 @@ def _until_bound(x: Array, step: Array, bounds: tuple[Array, Array]) -> tuple[fl
 
 
 def _descend(
-    evaluate: Evaluate,
-    x: Array,
-    step: Array,
-    residual: Array,
-    slope: float,
-    bounds: tuple[Array, Array],
-) -> tuple[Array, tuple[Array, Array] | None, float, int]:
-    """The first of ever shorter steps that does not raise the misfit, its share, and the tries.
-
-    The next one ends where the parabola through the misfit here, its slope, and the misfit there is
-    lowest (Dennis & Schnabel 1983, section 6.3.2); where the model ends before, it is halved.
-    """
-    before, share = float(residual @ residual), 1.0
-    for tries in range(1, TRIES + 1):
-        new = _snapped(x + share * step, bounds)
+    evaluate: Evaluate, x: Array, step: Array, residual: Array, bounds: tuple[Array, Array]
+) -> tuple[Array, tuple[Array, Array] | None, int]:
+    """The longest of the steps 1, 1/2, 1/4 ... that does not raise the misfit."""
+    before = float(residual @ residual)
+    for tries in range(1, 13):
+        new = _snapped(x + step, bounds)
         try:
             found = evaluate(new)
         except Refusal:
-            share *= 0.5
-            continue
-        after = float(found[0] @ found[0])
-        if after <= before * (1.0 + GRAIN) + 1e-18:
-            return new, found, share, tries
-        lowest = -0.5 * slope * share / (after - before - slope * share)
-        share *= min(max(lowest, SHRUNK), 0.5)
-    return x, None, share, TRIES
+            found = None
+        if found is not None and float(found[0] @ found[0]) <= before * (1.0 + GRAIN) + 1e-18:
+            return new, found, tries
+        step = 0.5 * step
+    return x, None, 12
 
 
 def _slopes(residual: Array, jacobian: Array) -> Array:
