@@ -12,6 +12,7 @@ import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.explain.absolute import run
 from sk120stiff.explain.absolute.document import verdict_of_positions
+from sk120stiff.explain.absolute.next_step import headline
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing import place
@@ -72,6 +73,7 @@ def test_names_that_stand_for_one_another_are_told_where_all_of_them_are_likely(
     assert answer.verdict == verdict
     told = any("None of these names is likely by itself" in n for n in answer.final.notes)
     assert told == (verdict == "ambiguous")
+    assert told == ("none of them likely by itself" in headline(answer))
     if verdict == "outside":
         assert answer.guess_heldout < 0.9 * answer.steps[-1].heldout_rms
         assert "best_guess.yaml is off by" in verdict_of_positions(answer)["next_step"]

@@ -12,6 +12,8 @@ from sk120stiff.identify.absolute.repeated import pure_error
 if TYPE_CHECKING:
     from sk120stiff.explain.absolute.explained import Explained
 
+EVEN = 0.5  # probability below which a name is not likely
+
 
 def headline(answer: Explained) -> str:
     """The verdict as a sentence: how many names are settled, and which are open."""
@@ -38,6 +40,11 @@ def headline(answer: Explained) -> str:
     )
     if count == 1:
         return f"Something was missing: its name is not settled{more}. Open: {told}."
+    if max(item.probability for item in answer.findings) < EVEN:
+        return (
+            f"Something was missing, and {count} names stand for it together, none of them likely "
+            f"by itself{more}. Open: {told}."
+        )
     settled = count - len(open_ones)
     named = (
         ("none of their names is", "the name of one is")[settled]
