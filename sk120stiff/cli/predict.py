@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sk120stiff.arrays import Mask, rms
+from sk120stiff.arrays import Array, Mask, rms
 from sk120stiff.cli.compensate_words import FAR_OFF
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import model_for, open_data
@@ -108,18 +108,20 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
         "out": out,
     }
     parts: list[object] = [] if moved is None else [moved.sentence()]
+    sizes: dict[str, list[Array]] = {"um": [], "urad": []}
     for column, what, unit in SINGLE:
         read = np.array(columns.get(column, []), dtype=float)
         read = read[readings.use & np.isfinite(read)] if read.size else read
         if read.size:
-            document[f"rms_{unit}"] = rms(read)
+            sizes[unit].append(read)
             shown = unit.replace("u", "µ", 1)
             parts.append(f"Gap over {len(read)} readings of {what}: {rms(read):.4g} {shown} rms.")
     gap = 1e6 * predicted.gap(readings)[readings.use]
     gap = gap[np.isfinite(gap).all(axis=1)]
     if len(gap):
         left, far = rms(gap), float(np.linalg.norm(gap, axis=1).mean())
-        document |= {"rms_um": left, "mean_distance_um": far}
+        sizes["um"].append(gap.ravel())
+        document["mean_distance_um"] = far
         of = "positions" if predicted.position is not None else "displacements"
         parts.append(
             f"Gap over {len(gap)} {of}: {left:.4g} µm rms per axis, {far:.4g} µm mean distance."
@@ -128,8 +130,9 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
     turns = np.array([columns.get(f"gap_{of}{axis}[urad]", []) for axis in "xyz"], dtype=float).T
     turns = turns[readings.use & np.isfinite(turns).all(axis=1)] if turns.size else turns
     if turns.size:
-        document["rms_urad"] = rms(turns)
+        sizes["urad"].append(turns.ravel())
         parts.append(f"Gap over {len(turns)} rotations: {rms(turns):.4g} µrad rms per axis.")
+    document |= {f"rms_{unit}": rms(np.concatenate(own)) for unit, own in sizes.items() if own}
     ways = predicted.std_parameters, predicted.std_remainder
     what = "a position" if predicted.position is not None else "a displacement"
     parts += sentences(model, *ways, what=what)

@@ -44,8 +44,8 @@ class Zeros:
         told = listed([f"{names[k]} by {1e3 * self.zero[k]:+.2g} mrad" for k in most])
         return (
             f"Zeros of joints look off what the robot's file states, {told}: with them "
-            f"{1e3 * self.rms:.2g} mm are left of {1e3 * before:.2g} mm. They are looked for among "
-            "the causes."
+            f"{1e3 * self.rms:.2g} mm are left of {1e3 * before:.2g} mm. 'explain' looks for them "
+            "among the causes."
         )
 
 

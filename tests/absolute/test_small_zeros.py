@@ -48,7 +48,7 @@ def test_zeros_that_bring_the_arm_there_are_told(tmp_path: Path) -> None:
     found = place(sk.load_robot(data.robot, base="base", tool="tool"), data)
     assert found is not None
     (said,) = [note for note in found.notes if "Zeros of joints" in note]
-    assert "looked for among the causes" in said
+    assert "'explain' looks for them among the causes" in said
 
 
 def test_they_are_named_beside_an_error_of_the_model(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ def steps_of(
     for k, label in enumerate(labels):
         chosen = found.order[:k]
         kind = white if k else replace(white, common=0.0)
-        metres, used = kind.undo, linear if k else linear.whitened(white, kind)
+        metres, used = kind.undo, linear if k else linear.only(()).whitened(white, kind)
         noise = used.noise(chosen)
         fitted = used.gap(chosen, noise, held_out=False)
         held = used.gap(chosen, noise, held_out=True)

@@ -114,7 +114,8 @@ def _behind(effect: Effect, final: Calibration) -> str | None:
     """Id of what may make the waves of an effect instead of the gear of its joint.
 
     None where its gear surely makes them, or nothing can: what hangs beyond another joint goes with
-    the angles of both, and is no wave of one.
+    the angles of both, and is no wave of one; and loads under which a joint did not yield say that
+    weight does not turn it.
     """
     if not isinstance(effect, TransmissionError) or chance_of_gear(*_wave(effect, final)) >= SURE:
         return None
@@ -122,7 +123,8 @@ def _behind(effect: Effect, final: Calibration) -> str | None:
         return f"{GravityCompensator.name}:{effect.where}"
     robot = final.model.robot
     weighs = robot.mechanism().chain.weighs or not robot.gravity_in_base.any()
-    if weighs or effect.where not in GravityCompensator.places(robot)[:1]:
+    loaded = final.problem.said.payload.any() or final.problem.measurements.wrench.any()
+    if weighs or loaded or effect.where not in GravityCompensator.places(robot)[:1]:
         return None
     return f"joint_springs:{effect.where}"
 

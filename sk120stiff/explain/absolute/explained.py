@@ -26,6 +26,7 @@ from sk120stiff.model import Share
 if TYPE_CHECKING:
     from sk120stiff.show import Report
 
+EVEN = 0.5  # probability below which a name is not likely by itself
 SURE = 0.95  # probability of a name that is settled
 
 

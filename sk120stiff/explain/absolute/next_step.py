@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sk120stiff.explain.absolute.balancer import tell_apart
-from sk120stiff.explain.absolute.explained import SURE
+from sk120stiff.explain.absolute.explained import EVEN, SURE
 from sk120stiff.explain.findings import likely
 from sk120stiff.identify.absolute.repeated import pure_error
 
 if TYPE_CHECKING:
     from sk120stiff.explain.absolute.explained import Explained
-
-EVEN = 0.5  # probability below which a name is not likely
 
 
 def headline(answer: Explained) -> str:

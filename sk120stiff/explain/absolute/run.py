@@ -33,7 +33,7 @@ from sk120stiff.explain.absolute.choose import (
     nothing_named,
     threshold,
 )
-from sk120stiff.explain.absolute.explained import Explained, Named
+from sk120stiff.explain.absolute.explained import EVEN, Explained, Named
 from sk120stiff.explain.absolute.laws import Laws, beside_laws, by_best_laws, laws_at, with_fewer
 from sk120stiff.explain.absolute.linear import Linear, everything
 from sk120stiff.explain.absolute.other_poses import NextPoses, elsewhere, never_told, next_poses
@@ -65,7 +65,6 @@ from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
 FEWEST_LOADED = 6  # the same where each is read by what loads do, several numbers to a pose
-EVEN = 0.5  # probability that one name at least must have to be confirmed
 TOGETHER = 0.8  # the same of all of them as one, where each may stand for the others
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
@@ -111,8 +110,8 @@ def explain_positions(
     tell("searching the catalogue", 0.2)
     seen = _about(base, readings, catalogue)
     linear, found, laws, hidden = _selected(base, seen, options, catalogue)
-    pushed = refuse_pushed(seen, readings, *everything(linear))
-    pushed = pushed or refuse_remounted(seen, readings, *everything(linear))
+    beside = everything(linear)
+    pushed = refuse_pushed(seen, readings, *beside) or refuse_remounted(seen, readings, *beside)
     tell("fitting exactly", 0.5)
     final = _exactly(base, seen, linear, found, readings, catalogue)
     for _ in range(ROUNDS):
@@ -128,7 +127,7 @@ def explain_positions(
         found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
     tell("what is left", 0.85)
     final, guess, guessed = with_model_form(final), None, np.nan
-    suspects: tuple[Contender, ...] = ()
+    suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
     if final.form is not None:
         linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
         likely = [alternatives(linear, found.order, e)[1] for e in found.order]
@@ -140,7 +139,7 @@ def explain_positions(
                 found, laws = nothing_named(linear, found), {}
                 final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
             else:
-                hangs += (
+                jointly = (
                     "None of these names is likely by itself, since each may stand for the others; "
                     "that what they take off together is theirs, and no part of an unknown cause, "
                     f"has P = {together:.2f}.",
@@ -151,6 +150,7 @@ def explain_positions(
         notes=(
             *hangs,
             *pushed,
+            *jointly,
             *final.notes,
             *pounds(final),
             *([] if pushed else creeping(final, readings)),

@@ -22,9 +22,8 @@ def refuse_remounted(
 ) -> tuple[str, ...]:
     """Stop where the marker moved with the payload, and the file tells nothing of it.
 
-    Where an error of the model might still be mistaken for it, a sentence says what it looks like.
-
-    Under a heavier payload it sits elsewhere then, whatever the order of the rows.
+    From some payload on it sits elsewhere then, whatever the order of the rows. Where an error of
+    the model might still be mistaken for it, a sentence says what it looks like.
 
     Args:
         found: A calibration.
