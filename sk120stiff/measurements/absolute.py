@@ -244,21 +244,14 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
                 found["turn"][:, k] = table.quantity(name, "angle", allow_blank=True)
     if "l" in roles.has:
         found["distance"] = table.quantity("l", "length", allow_blank=True)
-        found["anchor"] = table.quantities(ANCHORS, "length")
+        found["anchor"] = _anchors(table, found["distance"])
     if "d" in roles.has:
         found["shift"] = table.quantity("d", "length", allow_blank=True)
         found["along"] = _directions(table, DIRECTIONS, found["shift"])
     if "inc" in roles.has:
         found["inclination"] = table.quantity("inc", "angle", allow_blank=True)
         found["level"] = _directions(table, LEVELS, found["inclination"])
-        steep = np.abs(found["inclination"]) > STEEP
-        if steep.any():
-            raise InputError(
-                f"an inclination of {np.degrees(found['inclination'][steep][0]):.4g} deg",
-                where=table.place("inc", int(np.argmax(steep))),
-                remedy="Near the plumb line an inclination tells nothing: give one of another "
-                "direction vx, vy, vz of the tool, between -85 and 85 deg above the horizon.",
-            )
+        found["inclination"] = _without_steep(table, found["inclination"])
     sigma, noise = {}, file.settings.noise
     twice = file.settings.displacement.zero == "separate"  # two readings of the gauge
     since_zero = np.sqrt(2.0) if twice else 1.0
@@ -276,6 +269,46 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
         sigma |= {"rotation": turn, "inclination": turn, "turn": turn * since_zero}
     rows = table.quantities(UNCERTAINTIES, "length") if "sx" in roles.has else None
     return Channels(**found, sigma=sigma, sigma_of_rows=rows)
+
+
+def _anchors(table: Table, read: Array) -> Array:
+    """(N, 3) fixed points [m]; zero where no distance was read and none is written.
+
+    Raises:
+        InputError: A distance was read from no point.
+    """
+    found = table.quantities(ANCHORS, "length", allow_blank=True)
+    bad = np.isfinite(read)[:, None] & ~np.isfinite(found)
+    if bad.any():
+        row, axis = (int(each[0]) for each in np.nonzero(bad))
+        raise InputError(
+            "this distance was read from no point",
+            where=table.place(ANCHORS[axis], row),
+            remedy=f"Write the fixed point it was read from as {', '.join(ANCHORS)}.",
+        )
+    return np.asarray(np.nan_to_num(found))
+
+
+def _without_steep(table: Table, inclination: Array) -> Array:
+    """(N,) inclinations [rad], blank near the plumb line, where they tell nothing; told.
+
+    Raises:
+        InputError: All are near it.
+    """
+    steep = np.abs(inclination) > STEEP
+    if not steep.any():
+        return inclination
+    first = int(np.argmax(steep))
+    size = f"an inclination of {np.degrees(inclination[first]):.4g} deg"
+    near = "Near the plumb line an inclination tells nothing"
+    other = "give one of another direction vx, vy, vz of the tool, between -85 and 85 deg above"
+    if steep[np.isfinite(inclination)].all():
+        raise InputError(
+            size, where=table.place("inc", first), remedy=f"{near}: {other} the horizon."
+        )
+    more = f" and {steep.sum() - 1} more" if steep.sum() > 1 else ""
+    warn(f"{table.place('inc', first)}: {size}{more} left out. {near}; {other} the horizon.")
+    return np.where(steep, np.nan, inclination)
 
 
 def _directions(table: Table, names: tuple[str, ...], read: Array) -> Array:

@@ -85,6 +85,9 @@ def _normal_to(axis: Array, along: Array) -> tuple[Array, Array]:
     return flat, np.cross(axis, flat)
 
 
+WHOLE_ARM = 4  # joints that turn: more than a wrist has
+
+
 def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
     """Joints from base to tool, coupled ones included; worked out once for a robot."""
     known = _JOINTS.get(robot)
@@ -112,11 +115,18 @@ def _on_the_way(robot: Robot) -> tuple[ArmJoint, ...]:
 
 
 def arm_length(robot: Robot) -> float:
-    """Stretched length of the arm from its first joint to the tool [m], slides at full travel."""
-    total = sum(joint.length for joint in arm_joints(robot))
-    for slides, low, high in zip(robot.prismatic, robot.lower, robot.upper, strict=True):
-        if slides and np.isfinite([low, high]).all():
-            total += float(max(abs(low), abs(high)))
+    """Stretched length of the arm from its first joint to the tool [m], slides at full travel.
+
+    A slide that carries a whole arm is its rail: how far that goes says nothing of the arm.
+    """
+    total, turning = 0.0, 0
+    for joint in reversed(arm_joints(robot)):
+        total += joint.length
+        turning += joint.revolute
+        k = joint.actuated
+        if k is not None and robot.prismatic[k] and turning < WHOLE_ARM:
+            travel = np.abs([robot.lower[k], robot.upper[k]]).max()
+            total += float(travel) if np.isfinite(travel) else 0.0
     return total
 
 

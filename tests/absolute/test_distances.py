@@ -95,3 +95,16 @@ def test_a_prediction_tells_the_gap_of_wires(tmp_path: Path) -> None:
     assert np.sqrt(np.mean(gap**2)) == pytest.approx(1e6 * np.sqrt(np.mean(left**2)), rel=1e-3)
     read, said = (np.array(columns[name], dtype=float) for name in ("l[mm]", "predicted_l[mm]"))
     assert np.allclose(1e3 * (read - said), gap)
+
+
+def test_a_fixed_point_may_be_blank_where_no_distance_was_read(tmp_path: Path) -> None:
+    path = measured(tmp_path, POINTS)
+    lines = path.read_text().splitlines()
+    head = lines[3].split(",")[:-4]
+    path.write_text("\n".join([*lines[:3], ",".join([*head, "", "", "", ""]), *lines[4:]]))
+    read = sk.read(path).absolute
+    assert read is not None and read.channels.distance is not None
+    assert np.flatnonzero(np.isnan(read.channels.distance)).tolist() == [2]
+    path.write_text("\n".join([*lines[:3], ",".join([*head, "1", "2", "", "4"]), *lines[4:]]))
+    with pytest.raises(InputError, match=r"line 4.*ay.*read from no point"):
+        sk.read(path)

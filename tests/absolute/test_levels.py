@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.model import predict
 from sk120stiff.model.predicted import prediction_table
@@ -97,3 +98,20 @@ def test_a_prediction_tells_the_gap_of_levels(tmp_path: Path) -> None:
     gap = np.array(columns["gap_inc[urad]"], dtype=float)
     assert np.sqrt(np.mean(gap**2)) < 30.0  # 20 µrad of noise
     assert np.allclose(gap * 1e-6, found.problem.of_channels.undo(found.residual), atol=1e-9)
+
+
+def test_a_level_near_the_plumb_line_is_left_out_and_told(tmp_path: Path) -> None:
+    data = levelled(tmp_path)
+    lines = data.path.read_text().splitlines()
+    cells = lines[5].split(",")
+    steep = [*cells[:-4], "-85.09", *cells[-3:]]
+    data.path.write_text("\n".join([*lines[:5], ",".join(steep), *lines[6:]]))
+    with pytest.warns(UserWarning, match=r"line 6.* an inclination of -85.09 deg left out"):
+        read = sk.read(data.path)
+    assert read.absolute is not None
+    level = read.absolute.channels.inclination
+    assert level is not None and np.flatnonzero(np.isnan(level)).tolist() == [4]
+    every = [",".join([*line.split(",")[:-4], "86", *line.split(",")[-3:]]) for line in lines[1:]]
+    data.path.write_text("\n".join([lines[0], *every]))
+    with pytest.raises(InputError, match="an inclination of 86 deg"):
+        sk.read(data.path)

@@ -52,6 +52,7 @@ from sk120stiff.identify.absolute.calibrate import (
 from sk120stiff.identify.absolute.creeping import creeping
 from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
+from sk120stiff.identify.absolute.lacking import beside_parts
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.remainder import (
     LEVEL,
@@ -145,6 +146,7 @@ def explain_positions(
                     f"has P = {together:.2f}.",
                 )
     final = beside_laws(final, linear, found.order, laws)
+    final = beside_parts(final, catalogue, linear.candidates)
     final = replace(
         final,
         notes=(

@@ -8,7 +8,7 @@ catalogue, and backward. What it brings must show at poses left out, too.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,13 +51,20 @@ class Blocks:
     pose: Index
 
     @classmethod
-    def of(cls, found: Fit, catalogue: Catalogue) -> Blocks:
+    def of(
+        cls,
+        found: Fit,
+        catalogue: Catalogue,
+        wanted: Callable[[Effect], bool] = lambda _cause: True,
+    ) -> Blocks:
         """Of all causes that may be at work and show, but for errors of what is counted anyhow."""
         problem, model = of_poses(found), found.model
         present = [effect.id for effect in model.effects]
         every = causes_at(model.robot, problem.load_cases, problem.measurements, present, catalogue)
         references = problem.load_cases.references
-        every = tuple(referred(x, references) for x in every if not isinstance(x, COUNTED))
+        every = tuple(
+            referred(x, references) for x in every if wanted(x) and not isinstance(x, COUNTED)
+        )
         slope = slopes(problem, model, every)
         Q = orthonormal(found.jacobian, ROUNDING)
         white = problem.of_channels.apply
