@@ -19,6 +19,7 @@ MENTION = (
 RIVAL = 3.0  # loss of evidence at which another cause explains as much
 SHARE = 0.003  # of the held-out gap that a cause must take off to be named on top of others
 SURE = 2.5  # standard errors of the held-out gain over poses
+SURE_OF_USUAL = 1.0  # the same of what every arm has
 MOST = 40  # causes of one answer, where the poses do not stop it before
 
 
@@ -83,7 +84,7 @@ def by_likeliest(linear: Linear, found: Chosen) -> Chosen:
         odds = {c: linear.score((*rest, c), noise) + usual(linear.candidates[c]) for c in others}
         best = max(others, key=lambda c: odds[c])
         other = tuple(best if c == e else c for c in chosen)
-        if odds[best] > odds[e] + MENTION and confirmed(gain(linear, other, best), linear):
+        if odds[best] > odds[e] + MENTION and confirmed(gain(linear, other, best), linear, best):
             chosen = other
     return Chosen(chosen, found.dropped)
 
@@ -122,14 +123,14 @@ def _searched(linear: Linear, *, at_once: bool) -> tuple[tuple[int, ...], dict[i
         seen.add(frozenset(chosen))
         for e in best if at_once else ():
             gained = gain(linear, chosen, e) if e in chosen else None
-            if gained is not None and not confirmed(gained, linear):
+            if gained is not None and not confirmed(gained, linear, e):
                 why = (
                     f"fits, but at poses left out it takes off no more than "
                     f"{100 * gained.share:.1f} % of the gap ({gained.errors:.1f} standard errors)."
                 )
                 chosen = _without(linear, chosen, e, why, dropped)
     for e in list(chosen):
-        if e in chosen and not confirmed(gain(linear, chosen, e), linear):
+        if e in chosen and not confirmed(gain(linear, chosen, e), linear, e):
             chosen = _without(linear, chosen, e, "is not confirmed by poses left out.", dropped)
     return chosen, dropped
 
@@ -194,7 +195,7 @@ def _zeros(linear: Linear, chosen: tuple[int, ...], dropped: Set[int]) -> tuple[
         if best == e or others[best] < linear.score(chosen, noise):
             continue
         other = tuple(best if c == e else c for c in chosen)
-        if confirmed(gain(linear, other, best), linear):
+        if confirmed(gain(linear, other, best), linear, best):
             chosen = other
     return chosen
 
@@ -275,9 +276,10 @@ def _plainer(linear: Linear, chosen: tuple[int, ...]) -> tuple[int, ...]:
     return chosen
 
 
-def confirmed(gained: Gain, linear: Linear) -> bool:
-    """Do poses left out bear a name out?"""
-    return gained.share > SHARE and gained.errors > SURE and gained.folds >= min(4, linear.folds)
+def confirmed(gained: Gain, linear: Linear, e: int) -> bool:
+    """Do poses left out bear a name out? Of what every arm has less is asked."""
+    sure, folds = (SURE, 4) if usual(linear.candidates[e]) <= 0.0 else (SURE_OF_USUAL, 3)
+    return gained.share > SHARE and gained.errors > sure and gained.folds >= min(folds, linear.folds)
 
 
 def _backward(linear: Linear, chosen: tuple[int, ...], least: float) -> tuple[int, ...]:
@@ -285,7 +287,10 @@ def _backward(linear: Linear, chosen: tuple[int, ...], least: float) -> tuple[in
     while len(chosen) > 1:
         noise = linear.noise(chosen)
         whole = linear.score(chosen, noise)
-        lost = {e: whole - linear.score(linear.less(chosen, e), noise) for e in chosen}
+        lost = {
+            e: whole - linear.score(linear.less(chosen, e), noise) + usual(linear.candidates[e])
+            for e in chosen
+        }
         weakest = min(lost, key=lambda e: lost[e])
         if lost[weakest] >= least:
             return chosen
