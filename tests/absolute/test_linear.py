@@ -10,10 +10,14 @@ from scipy.stats import multivariate_normal
 from sk120stiff.effects import effect
 from sk120stiff.explain.absolute import standing as standing_of
 from sk120stiff.explain.absolute.choose import (
+    BEYOND_DOUBT,
     CLEAR,
     SHARE,
     SURE,
+    SURE_OF_USUAL,
+    USUAL,
     Gain,
+    _backward,
     _next,
     confirmed,
     gain,
@@ -114,10 +118,38 @@ def test_a_gain_is_what_the_gap_falls_by_at_poses_left_out():
         (Gain(0.5 * SHARE, 2 * SURE, 5), False),
         (Gain(2 * SHARE, 0.5 * SURE, 5), False),
         (Gain(2 * SHARE, 2 * SURE, 3), False),
+        (Gain(2 * SHARE, 0.5 * SURE, 3, expected=True), True),
+        (Gain(2 * SHARE, 0.5 * SURE_OF_USUAL, 3, expected=True), False),
+        (Gain(2 * SHARE, 0.5 * SURE, 4, evidence=2.0 * BEYOND_DOUBT), True),
+        (Gain(2 * SHARE, 0.5 * SURE, 3, evidence=2.0 * BEYOND_DOUBT), False),
     ],
 )
 def test_a_cause_is_confirmed_by_its_size_its_doubt_and_most_parts(gained, sure):
     assert confirmed(gained, linear()) is sure
+
+
+def test_what_every_arm_has_is_given_up_at_the_price_at_which_it_joined():
+    """Between the two prices a spring stays, and a misread scale goes."""
+    least = CLEAR + np.log(4.0)
+    spring = effect(load_robot("motoman_sk120"), "joint_springs", "joint_2_l")
+    for size in np.linspace(0.3, 0.8, 26):
+        made = linear(size, 3.0)
+        noise = made.noise((0, 1))
+        brings = made.score((0, 1), noise) - made.score((1,), noise)
+        if least - USUAL < brings < least:
+            break
+    assert _backward(made, (0, 1), least) == (1,)
+    usual = replace(made, candidates=(spring, *made.candidates[1:]))
+    assert _backward(usual, (0, 1), least) == (0, 1)
+
+
+def test_a_gain_knows_its_evidence_and_what_every_arm_has():
+    made = linear(1.0, -0.5)
+    found, noise = gain(made, (0, 1), 0), made.noise((0, 1))
+    assert found.evidence == pytest.approx(made.score((0, 1), noise) - made.score((1,), noise))
+    spring = effect(load_robot("motoman_sk120"), "joint_springs", "joint_2_l")
+    usual = replace(made, candidates=(spring, *made.candidates[1:]))
+    assert gain(usual, (0, 1), 0).expected and not found.expected
 
 
 def test_a_cause_joins_by_more_evidence_the_more_were_looked_at():

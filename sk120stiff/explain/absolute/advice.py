@@ -64,7 +64,7 @@ def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
         odds = linear.score((*found.order, e), noise) - now - entry_price(linear, e)
         share = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
         wider = (*found.order, e)
-        if share > UNLIKELY and not confirmed(gain(linear, wider, e), linear, e):
+        if share > UNLIKELY and not confirmed(gain(linear, wider, e), linear):
             share *= FALLEN
         out[effect.id] = share
     return {name: p for name, p in out.items() if p >= LEAST}

@@ -63,7 +63,7 @@ def _rivals(
     )
     most = own + float(np.log(FALLEN))
     for c in rivals:
-        if others[c] > most and not confirmed(gain(linear, (*rest, c), c), linear, c):
+        if others[c] > most and not confirmed(gain(linear, (*rest, c), c), linear):
             others[c] = most
     scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
     prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
