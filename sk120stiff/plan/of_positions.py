@@ -212,6 +212,8 @@ def plan_positions(
     if len(idle):
         masses = ", ".join(f"{mass:g} kg" for mass in idle)
         remarks = (*remarks, f"No reading hangs {masses} on the tool: the others tell more.")
+    if any(pool.problem.model.parameter(name).effect.joint_spring for name in wanted):
+        remarks = (*remarks, RIGID)
     numbers, values = pool.numbers(len(chosen.rows)), len(pool.problem.model.free)
     if numbers < values:
         remarks = (
@@ -226,6 +228,10 @@ def plan_positions(
     )  # fmt: skip
 
 
+RIGID = (
+    "The ± of springs are those of an arm whose links and bearings are rigid: what these may yield "
+    "beside is in the ± of a fit, as far as its readings leave it open."
+)
 SOURCE = "poses and payloads chosen by 'sk120stiff plan'"
 
 

@@ -12,6 +12,7 @@ import sk120stiff as sk
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.plan import Cell, Places, PlanOfPositions
+from sk120stiff.plan.of_positions import RIGID
 from tests.absolute.arm import Arm, bound, errors, tracked, urdf
 
 SIGMA, FEW = 2e-5, 60  # m; poses to choose from
@@ -56,6 +57,7 @@ def test_what_is_promised_is_the_bound_of_the_poses(model: sk.Model) -> None:
         assert std == pytest.approx(least[int(name[1]) - 1], rel=0.06), name
     why = {e.parameter.effect.where: e.reason for e in made.expected if e.reason is not None}
     assert "neither weight nor payload" in (why["j1"] or "") and "j6" in why
+    assert RIGID in made.remarks
     others = sk.plan_positions(model, 30, point=AT, sigma=2.0 * SIGMA, candidates=FEW)
     assert others.standard == 2.0 * SIGMA
     duller = bound(Arm(compliance=COMPLIANCE, marker=AT), others.joints, 2.0 * SIGMA)
@@ -114,6 +116,7 @@ def test_an_arm_without_weight_has_its_geometry_planned_alone(tmp_path: Path) ->
     light = sk.joint_spring_model(robot)
     made = sk.plan_positions(light, 12, point=AT, candidates=40)
     assert not springs_of(made) and any("no masses" in said for said in made.remarks)
+    assert RIGID not in made.remarks
     assert {each.parameter.effect.name for each in made.expected} == {"joint_frame"}
     with pytest.raises(InputError, match=r"nothing to plan for.*no masses"):
         sk.plan_positions(light, 12, parameters=[light.names[0]], candidates=40)
