@@ -41,7 +41,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/absolute/choose.py", *POSITIONS,
-        confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > SURE and", "gained.share > SHARE and"),
+        confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > sure and", "gained.share > SHARE and"),
         looking_at_many_for_nothing=("CLEAR + float(np.log(max(len(linear.candidates), 1)))", "CLEAR"),
         gain_at_poses_that_were_fitted=("linear.gap(each, linear.noise(each), held_out=True)", "linear.gap(each, linear.noise(each), held_out=False)"),
     ),

@@ -53,6 +53,8 @@ class Fit:
             None: by nothing.
         left_out: (P_free,) standard errors by what the model is known to leave out; None: nothing.
         foreign: (P_free, P_free) covariance by a cause that has no name; None: there is none.
+        parts: (P_free, P_free) the same by parts that yield instead, which foretell readings like
+            these alike; None: there is none.
 
     Examples:
         >>> import sk120stiff as sk
@@ -76,6 +78,7 @@ class Fit:
     selection_uncertainty: Array | None = None
     left_out: Array | None = None
     foreign: Array | None = None
+    parts: Array | None = None
 
     def __repr__(self) -> str:
         values = ", ".join(
@@ -288,7 +291,9 @@ class Fit:
     @property
     def moves(self) -> Moves:
         """What is not of the readings' noise."""
-        return Moves.of(len(self.x), self.selection_uncertainty, self.left_out, self.foreign)
+        return Moves.of(
+            len(self.x), self.selection_uncertainty, self.left_out, self.foreign, self.parts
+        )
 
     @property
     def unit(self) -> float:
@@ -380,9 +385,10 @@ class Fit:
             self.unit,
         )
         low, high = (bound[:, None] for bound in self.problem.bounds)
-        if self.left_out is not None:  # an error like the noise's: squares add
+        random = self.moves.random
+        if random.any():  # errors like the noise's: squares add
             away = np.abs(ends - self.x[:, None])
-            error = self.reach(level) * self.left_out[:, None]
+            error = self.reach(level) * random[:, None]
             wider = error**2 / np.maximum(away + np.hypot(away, error), 1e-300)
             ends = np.clip(ends + wider * [-1.0, 1.0], low, high)
         elsewhere = np.outer(self.moves.elsewhere, [-1.0, 1.0])

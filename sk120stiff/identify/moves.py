@@ -17,15 +17,22 @@ class Moves:
         models: (P,) by other models that are possible as well.
         left_out: (P,) standard errors by what the model is known to leave out.
         foreign: (P, P) covariance by a cause that has no name, which moves them together.
+        parts: (P, P) the same by parts that yield instead, which foretell such readings alike.
     """
 
     models: Array
     left_out: Array
     foreign: Array
+    parts: Array
 
     @classmethod
     def of(
-        cls, count: int, models: Array | None, left_out: Array | None, foreign: Array | None
+        cls,
+        count: int,
+        models: Array | None,
+        left_out: Array | None,
+        foreign: Array | None,
+        parts: Array | None,
     ) -> Moves:
         """Of so many estimates; None: by nothing."""
         none, apart = np.zeros(count), np.zeros((count, count))
@@ -33,18 +40,26 @@ class Moves:
             none if models is None else models,
             none if left_out is None else left_out,
             apart if foreign is None else foreign,
+            apart if parts is None else parts,
         )
 
     def scaled(self, scale: Array) -> Moves:
         """The same in other units: (P,) of one in the other."""
+        both = np.outer(scale, scale)
         return Moves(
-            self.models * scale, self.left_out * scale, self.foreign * np.outer(scale, scale)
+            self.models * scale, self.left_out * scale, self.foreign * both, self.parts * both
         )
 
     @property
     def covariance(self) -> Array:
         """(P, P) of all together, each model's move for itself."""
-        return np.asarray(np.diag(self.models**2 + self.left_out**2) + self.foreign)
+        apart = np.diag(self.models**2 + self.left_out**2)
+        return np.asarray(apart + self.foreign + self.parts)
+
+    @property
+    def random(self) -> Array:
+        """(P,) standard errors that are as likely one way or the other."""
+        return np.sqrt(self.left_out**2 + np.diag(self.parts))
 
     @property
     def elsewhere(self) -> Array:

@@ -14,11 +14,12 @@ from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_
 from sk120stiff.identify.absolute.creeping import creeping
 from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
-from sk120stiff.identify.absolute.lacking import beside_lacking, beside_parts
+from sk120stiff.identify.absolute.lacking import beside_lacking
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.remounted import refuse_remounted
 from sk120stiff.identify.absolute.weighing import pounds
 from sk120stiff.identify.absolute.words import known_calibration
+from sk120stiff.identify.absolute.yielding_parts import beside_parts
 from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.solvers import Method
@@ -86,7 +87,7 @@ def fit(
         beside = Blocks.of(calibrated, CATALOGUE).beside_loads(calibrated.unit)
         pushed = refuse_pushed(calibrated, readings, *beside)
         pushed = pushed or refuse_remounted(calibrated, readings, *beside)
-        found = beside_parts(beside_lacking(with_model_form(calibrated)))
+        found = beside_parts(beside_lacking(with_model_form(calibrated)), model.catalogue)
         by_row = pushed or creeping(found, readings)
         return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
     if not waves:

@@ -157,5 +157,6 @@ def widened_as(found: Fit, other: Fit) -> Fit:
             selection_uncertainty=other.selection_uncertainty,
             left_out=other.left_out,
             foreign=other.foreign,
+            parts=other.parts,
         )
     )

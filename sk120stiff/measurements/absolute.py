@@ -272,21 +272,22 @@ def _channels(table: Table, roles: Roles, file: SettingsFile) -> Channels:
 
 
 def _anchors(table: Table, read: Array) -> Array:
-    """(N, 3) fixed points [m]; zero where no distance was read and none is written.
+    """(N, 3) fixed points [m]; NaN where none is written, for no distance is read there.
 
     Raises:
-        InputError: A distance was read from no point.
+        InputError: A distance was read from no point, or a point lacks a coordinate.
     """
     found = table.quantities(ANCHORS, "length", allow_blank=True)
-    bad = np.isfinite(read)[:, None] & ~np.isfinite(found)
+    known = np.isfinite(found)
+    bad = ~known & (np.isfinite(read) | known.any(axis=1))[:, None]
     if bad.any():
         row, axis = (int(each[0]) for each in np.nonzero(bad))
         raise InputError(
-            "this distance was read from no point",
+            "the fixed point that this distance is read from lacks a coordinate",
             where=table.place(ANCHORS[axis], row),
-            remedy=f"Write the fixed point it was read from as {', '.join(ANCHORS)}.",
+            remedy=f"Write {', '.join(ANCHORS)}; where no distance is read all may be blank.",
         )
-    return np.asarray(np.nan_to_num(found))
+    return found
 
 
 def _without_steep(table: Table, inclination: Array) -> Array:

@@ -105,6 +105,8 @@ def test_a_fixed_point_may_be_blank_where_no_distance_was_read(tmp_path: Path) -
     read = sk.read(path).absolute
     assert read is not None and read.channels.distance is not None
     assert np.flatnonzero(np.isnan(read.channels.distance)).tolist() == [2]
-    path.write_text("\n".join([*lines[:3], ",".join([*head, "1", "2", "", "4"]), *lines[4:]]))
-    with pytest.raises(InputError, match=r"line 4.*ay.*read from no point"):
-        sk.read(path)
+    assert read.channels.anchor is not None and np.isnan(read.channels.anchor[2]).all()
+    for cells in (["1", "2", "", "4"], ["", "1.6", "", "0.1"], ["1", "", "", ""]):
+        path.write_text("\n".join([*lines[:3], ",".join([*head, *cells]), *lines[4:]]))
+        with pytest.raises(InputError, match=r"line 4.*lacks a coordinate"):
+            sk.read(path)

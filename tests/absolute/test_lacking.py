@@ -7,22 +7,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import multivariate_normal
 
 import sk120stiff as sk
 from sk120stiff.identify.absolute.asked_for import Blocks
 from sk120stiff.identify.absolute.calibrate import calibrate
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
-from sk120stiff.identify.absolute.lacking import (
-    _as_one,
-    _fitted,
-    beside_lacking,
-    beside_parts,
-)
+from sk120stiff.identify.absolute.lacking import beside_lacking
 from sk120stiff.identify.absolute.waves import waves_that_show
 from sk120stiff.identify.absolute.words import missing_sentences
-from tests.absolute.arm import NAMES, errors, poses, tracked, write
-from tests.absolute.missing_cause import FIT, SLIPPED, SOFTENS, YIELDS, campaign
+from tests.absolute.arm import errors
+from tests.absolute.missing_cause import SLIPPED, SOFTENS, YIELDS, campaign
 
 
 def test_what_is_missing_is_no_wave_and_no_slope_of_the_base(tmp_path: Path) -> None:
@@ -40,54 +34,6 @@ def test_what_is_missing_is_no_wave_and_no_slope_of_the_base(tmp_path: Path) -> 
     off = abs(second.internal - arm.compliance[1])
     assert off > 5.0 * found.model.parameter(second.name).internal_std
     assert off < 3.0 * second.internal_std
-
-
-@pytest.mark.parametrize(("seed", "alone"), [(1, 5.0), (3, 4.0)])
-def test_springs_know_of_a_base_that_yields_by_less_than_asks_for_a_name(
-    tmp_path: Path, seed: int, alone: float
-) -> None:
-    """A quarter of what the test above has: nothing is beyond doubt, and springs are off."""
-    arm, a = errors(seed), poses(30, seed)
-    arm.rocks = 0.25 * YIELDS
-    x = tracked(arm.stands(a)[0])
-    x += 2e-5 * np.random.default_rng(seed).normal(size=x.shape)
-    data = sk.read(write(tmp_path, a, x, f"{FIT}noise: {{sigma: 20, unit: um}}\n"))
-    robot = sk.load_robot(data.robot, base="base", tool="tool")
-    found = calibrate(sk.base_model(robot), data.with_joints(NAMES), waves=False)
-    narrow = beside_lacking(found)
-    wide = beside_parts(narrow)
-    assert narrow.lacks == ()
-    second = wide.model.parameter("joint_springs:j2.stiffness")
-    off = abs(second.internal - arm.compliance[1])
-    assert off > alone * narrow.model.parameter(second.name).internal_std
-    assert off < 2.0 * second.internal_std < 0.5 * second.internal
-    (said,) = [note for note in wide.notes if "links and bearings" in note]
-    assert "joint_springs:j2 (by link_bending:" in said
-    rigid = beside_parts(narrow, among=())
-    assert rigid.model.parameter(second.name).internal_std == pytest.approx(
-        narrow.model.parameter(second.name).internal_std, rel=1e-12
-    )
-
-
-def test_evidence_is_that_of_normal_factors() -> None:
-    rng = np.random.default_rng(5)
-    columns, left = rng.normal(size=(12, 2)), rng.normal(size=12)
-    wide = np.eye(12) + columns @ columns.T
-    exact = (
-        multivariate_normal(cov=wide).logpdf(left)
-        - multivariate_normal(cov=1.0).logpdf(left[:, None]).sum()
-    )
-    shown, evidence = _fitted(columns, np.zeros(2, bool), left)
-    assert evidence == pytest.approx(float(exact), rel=1e-9)
-    np.testing.assert_allclose(shown, (wide - np.eye(12)) @ np.linalg.solve(wide, left), rtol=1e-9)
-    shown, evidence = _fitted(-np.abs(columns), np.ones(2, bool), np.ones(12))
-    assert not shown.any() and evidence == 0.0  # no compliance is negative
-
-
-def test_parts_that_show_alike_share_the_probability_that_any_is_there() -> None:
-    shown = np.array([[1.0, 0.0], [-3.0, 0.0], [0.0, 2.0], [0.0, 0.0]])
-    likely = np.array([0.5, 0.5, 0.3, 0.2])
-    np.testing.assert_allclose(_as_one(likely, shown), [0.375, 0.375, 0.3, 0.0], rtol=1e-6)
 
 
 def test_rows_in_which_a_missing_cause_shows_most_are_no_slips(tmp_path: Path) -> None:

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.explain.absolute.choose import SHARE, SURE, Chosen, confirmed, entry_price, gain
+from sk120stiff.explain.absolute.choose import (
+    SHARE,
+    SURE,
+    SURE_OF_USUAL,
+    Chosen,
+    confirmed,
+    entry_price,
+    gain,
+    usual,
+)
 from sk120stiff.explain.absolute.linear import Linear
 from sk120stiff.explain.absolute.standing import standing
 from sk120stiff.explain.advise.detectable import length_named
@@ -12,7 +21,7 @@ from sk120stiff.explain.findings import Detectable
 from sk120stiff.explain.priors import FALLEN
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
-CONFIRMED = 2.0 * (SURE + 0.84)
+CONFIRMED, CONFIRMED_OF_USUAL = 2.0 * (SURE + 0.84), 2.0 * (SURE_OF_USUAL + 0.84)
 UNLIKELY = 0.05  # probability below which nobody asks poses left out
 LEAST = 0.01  # probability below which nobody is told
 
@@ -35,10 +44,11 @@ def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
         volume = float(np.linalg.slogdet(np.eye(block.shape[1]) + block.T @ block / noise)[1])
         price = 2.0 * entry_price(linear, e) + volume
         fall = max(price, 2.0 * SHARE * len(linear.residual))
-        need = max(length_named(round(fall, 1), block.shape[1]), CONFIRMED) * np.sqrt(noise)
-        for k, (spec, usual) in enumerate(zip(effect.parameters, linear.sizes[own], strict=True)):
+        least = CONFIRMED_OF_USUAL if usual(effect) > 0.0 else CONFIRMED
+        need = max(length_named(round(fall, 1), block.shape[1]), least) * np.sqrt(noise)
+        for k, (spec, unit) in enumerate(zip(effect.parameters, linear.sizes[own], strict=True)):
             size = float(np.linalg.norm(block[:, k]))
-            value = float(need / size * usual) if size > 0.0 else np.inf
+            value = float(need / size * unit) if size > 0.0 else np.inf
             shown = spec.public(value) if value <= spec.plausible else None
             out.append(Detectable(f"{effect.id}.{spec.name}", shown, spec.unit))
     return tuple(out)

@@ -152,6 +152,7 @@ def _effect(
             "folds": answer.linear.folds,
             "heldout_gain": item.gain.share,
             "heldout_gain_errors": item.gain.errors,
+            "log_evidence": item.gain.evidence,
         },
     }
 

@@ -52,7 +52,6 @@ from sk120stiff.identify.absolute.calibrate import (
 from sk120stiff.identify.absolute.creeping import creeping
 from sk120stiff.identify.absolute.force_axes import refuse_other_forces
 from sk120stiff.identify.absolute.hanging import refuse_another_gravity
-from sk120stiff.identify.absolute.lacking import beside_parts
 from sk120stiff.identify.absolute.pushed import refuse_pushed
 from sk120stiff.identify.absolute.remainder import (
     LEVEL,
@@ -61,6 +60,7 @@ from sk120stiff.identify.absolute.remainder import (
 )
 from sk120stiff.identify.absolute.remounted import refuse_remounted
 from sk120stiff.identify.absolute.weighing import pounds
+from sk120stiff.identify.absolute.yielding_parts import beside_parts
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
@@ -135,7 +135,9 @@ def explain_positions(
         if likely and max(likely) < EVEN:
             if (together := of_all(linear, found.order)) < TOGETHER:
                 inside = numbers_told(seen, final, readings)
-                guess, suspects = final, suspects_of(linear, found, seen, inside)
+                guess = beside_laws(final, linear, found.order, laws)
+                guess = beside_parts(guess, catalogue, options.exclude)
+                suspects = suspects_of(linear, found, seen, inside)
                 guessed = held_out_rms(linear, found.order, seen, inside)
                 found, laws = nothing_named(linear, found), {}
                 final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
@@ -145,8 +147,7 @@ def explain_positions(
                     "that what they take off together is theirs, and no part of an unknown cause, "
                     f"has P = {together:.2f}.",
                 )
-    final = beside_laws(final, linear, found.order, laws)
-    final = beside_parts(final, catalogue, linear.candidates)
+    final = beside_parts(beside_laws(final, linear, found.order, laws), catalogue, options.exclude)
     final = replace(
         final,
         notes=(

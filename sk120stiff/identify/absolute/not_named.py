@@ -52,6 +52,7 @@ def beside_not_named(found: Calibration, effects: Sequence[Effect]) -> Calibrati
         selection_uncertainty=_padded(found.selection_uncertainty, more),
         left_out=_padded(found.left_out, more),
         foreign=_padded(found.foreign, more),
+        parts=_padded(found.parts, more),
     )
     own = {each.name for each in fields(Calibration)} - {each.name for each in fields(Fit)}
     told = {name: getattr(found, name) for name in own}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy import linalg
 
 from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
@@ -84,14 +85,15 @@ def _beside_noise(fit: Fit, covariance: Array) -> Array:
     more than noise may, and together.
     """
     moves = fit.moves.scaled(fit.problem.scale)
-    own = np.flatnonzero(moves.models)
-    move = moves.models[own]
-    noise = AS_WELL * covariance[np.ix_(own, own)] / np.outer(move, move)
-    shares, directions = np.linalg.eigh(noise)  # of the noise's variance beside that of the moves
-    shares = np.maximum(shares, 0.0)
-    half = move[:, None] * directions * np.sqrt(shares / (1.0 + shares))
+    M = np.diag(moves.models**2) + moves.parts
+    own = np.flatnonzero(np.diag(M))
+    size = np.sqrt(np.diag(M)[own])
+    inside = np.ix_(own, own)
+    moved = M[inside] / np.outer(size, size)
+    noise = AS_WELL * covariance[inside] / np.outer(size, size)
     together = np.zeros(covariance.shape)
-    together[np.ix_(own, own)] = half @ half.T
+    half = linalg.pinvh(moved + noise) @ noise
+    together[inside] = np.outer(size, size) * (moved @ half)
     return np.asarray(np.diag(moves.left_out**2) + moves.foreign + together)
 
 
