@@ -45,8 +45,9 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
     assert told
     for expected in told:
         std = identified[expected["name"]]["std"]
-        # What the unstated weight of the arm would move the value by counts in it as well.
-        assert 0.95 * expected["std"] < std < 1.2 * expected["std"], expected["name"]
+        # A fit counts what links and bearings may yield as well, as the plan says that it will.
+        assert 0.95 * expected["std"] < std < 2.0 * expected["std"], expected["name"]
+    assert any("links and bearings are rigid" in said for said in found["remarks"])
     more = run(
         "plan", MODEL, "--data", made, "--count", "3", "--candidates", "60", "--json"
     ).document

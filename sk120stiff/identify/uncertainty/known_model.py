@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy import linalg
 
 from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
@@ -20,6 +19,7 @@ from sk120stiff.robot.anatomy import arm_length
 
 SIGNIFICANT = 0.05  # probability of noise alone below which something is left
 AS_WELL = 3.0  # of the noise's variance: other models fit worse by up to 10 in χ², evenly spread
+TINY = 1e-12  # of the moves' variance
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
 
@@ -92,8 +92,11 @@ def _beside_noise(fit: Fit, covariance: Array) -> Array:
     moved = M[inside] / np.outer(size, size)
     noise = AS_WELL * covariance[inside] / np.outer(size, size)
     together = np.zeros(covariance.shape)
-    half = linalg.pinvh(moved + noise) @ noise
-    together[inside] = np.outer(size, size) * (moved @ half)
+    noise[np.diag_indices(len(own))] += TINY
+    both = moved @ np.linalg.solve(moved + noise, noise)
+    shares, directions = np.linalg.eigh(0.5 * (both + both.T))
+    half = size[:, None] * directions * np.sqrt(np.maximum(shares, 0.0))  # rounding is no variance
+    together[inside] = half @ half.T
     return np.asarray(np.diag(moves.left_out**2) + moves.foreign + together)
 
 
