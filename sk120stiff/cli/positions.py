@@ -43,6 +43,7 @@ def _held_out(found: HeldOutFile, problem: PoseProblem) -> dict[str, object]:
         "mean_distance_um": found.distance * 1e6 if np.isfinite(found.distance) else None,
         "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
         f"rms_of_all_{ending}": found.rms_of_all * 1e6,
+        f"registered_rms_{ending}": found.registered * 1e6,
         "placed_anew": found.anew,
     }
 

@@ -157,7 +157,7 @@ def test_a_held_out_file_of_another_temperature_is_met(tmp_path: Path) -> None:
     x = tracked(grown(other, np.full(60, 20.0))) + noise[1]
     path = tmp_path / "held"
     held = readings_of(path, other, x, FIT + NOISE, "temperature[degC]", np.full(60, 40.0))
-    told = heldout_on(found, held.with_joints(found.model.robot.actuated))
+    told = heldout_on(found, found, held.with_joints(found.model.robot.actuated))
     assert told.rms < 1.3 * SIGMA
     assert told.anew is None
 

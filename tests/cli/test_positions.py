@@ -122,7 +122,8 @@ def test_angles_alone_are_told_in_their_own_unit_everywhere(run, tmp_path: Path)
         "--json",
     ).document  # fmt: skip
     assert again["gap"]["unit"] == "urad" and set(again["holdout"]) == {
-        "rms_urad", "rms_of_all_urad", "mean_distance_um", "set_aside", "placed_anew"
+        "rms_urad", "rms_of_all_urad", "mean_distance_um", "set_aside", "placed_anew",
+        "registered_rms_urad",
     }  # fmt: skip
 
 
@@ -136,8 +137,10 @@ def test_rows_set_aside_are_told_beside_held_out_numbers(run, tmp_path: Path) ->
     held = document["holdout"]
     assert [item["line"] for item in held["set_aside"]] == [5, 11]
     assert held["rms_um"] < 30.0 < 200.0 < held["rms_of_all_um"] and held["placed_anew"] is None
+    assert held["registered_rms_um"] > 3.0 * held["rms_um"]
     said = " ".join(run(*given, "--out", str(tmp_path / "out")).stdout.split())
     assert "leave out the 3 rows that were set aside" in said
+    assert f"the registered arm alone: {held['registered_rms_um']:.4g} µm" in said
     assert "Not counted: 2 rows that lie far off all others, line 5 (pose P4)" in said
 
 

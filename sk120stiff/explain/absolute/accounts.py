@@ -42,6 +42,7 @@ class HeldOutFile:
         set_aside: (N,) rows that lie far off all others of their file.
         rms_of_all: Rms with these rows [m].
         readings: All N readings.
+        registered: Rms that the arm leaves there which was only registered [m].
         anew: What was found anew because the tracker stands elsewhere, in words; None: nothing.
     """
 
@@ -50,6 +51,7 @@ class HeldOutFile:
     set_aside: Mask
     rms_of_all: float
     readings: Measurements
+    registered: float
     anew: str | None = None
 
     def sentence(self, problem: PoseProblem) -> str:
@@ -58,6 +60,7 @@ class HeldOutFile:
         said = f"Held-out file: {1e6 * self.rms:.3g} {problem.rms_unit}"
         if np.isfinite(self.distance):
             said += f", {1e6 * self.distance:.3g} µm mean distance"
+        said += f"; the registered arm alone: {1e6 * self.registered:.4g} {problem.unit}"
         if len(rows):
             lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows]
             lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
@@ -183,23 +186,36 @@ def rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2))) if len(x) else 0.0
 
 
-def heldout_on(final: Calibration, others: Measurements) -> HeldOutFile:
+def heldout_on(final: Calibration, base: Calibration, others: Measurements) -> HeldOutFile:
     """How far a calibration is off at readings it never saw; rows far off all others are told.
 
-    Where the tracker stands elsewhere by then, its frame is that of these readings.
+    Where the tracker stands elsewhere by then, its frame is that of these readings, as it is for
+    the `base`, which is the arm that was only registered.
     """
     warn_of_references(final.model, others)
     moved = placed_anew(final.model, others)
-    if moved is not None:
-        final = replace(final, model=moved.model)
+    final = final if moved is None else replace(final, model=moved.model)
     wild = wild_beside(final, others, np.zeros(others.n_readings, dtype=bool))
-    problem = replace(final.problem, measurements=others.masked(), model=final.model)
-    gap, kept = problem.channel_gap(final.model.values)[0], ~wild[others.use]
+    kept = ~wild[others.use]
+    problem, gap = _gap_of(final, others)
     counted = problem.counted
+    inside = counted[kept[problem.rows[counted]]]
     length = problem.distances(gap)[kept]
     length = length[np.isfinite(length)]
-    distance = float(length.mean()) if len(length) else np.nan
+    rigid = placed_anew(base.model, others)
+    base = base if rigid is None else replace(base, model=rigid.model)
     return HeldOutFile(
-        rms(gap[counted[kept[problem.rows[counted]]]]), distance, wild, rms(gap[counted]), others,
-        None if moved is None else moved.sentence(),
-    )  # fmt: skip
+        rms=rms(gap[inside]),
+        distance=float(length.mean()) if len(length) else np.nan,
+        set_aside=wild,
+        rms_of_all=rms(gap[counted]),
+        readings=others,
+        registered=rms(_gap_of(base, others)[1][inside]),
+        anew=None if moved is None else moved.sentence(),
+    )
+
+
+def _gap_of(found: Calibration, others: Measurements) -> tuple[PoseProblem, Array]:
+    """Other readings as a problem of a calibration's model, and (M,) what it leaves of them."""
+    problem = replace(found.problem, measurements=others.masked(), model=found.model)
+    return problem, problem.channel_gap(found.model.values)[0]

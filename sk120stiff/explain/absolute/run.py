@@ -195,7 +195,7 @@ def explain_positions(
         probabilities=shared(probabilities(linear, found), named, final),
         following=following,
         readings=readings,
-        heldout=None if holdout is None else heldout_on(final, holdout.with_joints(*joints)),
+        heldout=None if holdout is None else heldout_on(final, base, holdout.with_joints(*joints)),
     )
 
 
