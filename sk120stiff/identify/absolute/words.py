@@ -230,7 +230,8 @@ def _rigid(found: Calibration) -> list[str]:
     if open_ := [
         p.name for p, (_, high) in ends if np.isinf(high) and p.name not in (*hidden, *soft)
     ]:
-        said.append(f"The readings do not tell {listed(open_)} from rigid (inf).")
+        reach = "interval of {} reaches" if len(open_) == 1 else "intervals of {} reach"
+        said.append(f"The {reach.format(listed(open_))} up to rigid (inf).")
     return said
 
 

@@ -329,12 +329,15 @@ def _clock(
 
 
 def _markers(sheet: Sheet, told: Told) -> tuple[tuple[str, ...], dict[str, Array]]:
+    """The marker of each row, and where each sits; none where every tool is zero, as never set."""
     columns = sheet.those(*(f"tcp {axis}" for axis in POSITIONS))
     if len(columns) != 3:
         return (), {}
     values = np.column_stack(
         [quantity(sheet, c, "length", unit_of(sheet, c, "length", told)) for c in columns]
     )
+    if not values.any():
+        return (), {}
     kinds, index = np.unique(values, axis=0, return_inverse=True)
     names = [f"M{k + 1}" for k in range(len(kinds))]
     return tuple(names[k] for k in index.ravel()), dict(zip(names, kinds, strict=True))

@@ -91,6 +91,14 @@ def test_robodk(tmp_path: Path) -> None:
     np.testing.assert_allclose(places["M1"], [-0.05, 0.01, 0.12])
 
 
+def test_a_tool_of_zeros_was_never_set(tmp_path: Path) -> None:
+    lines = sample("robodk.csv").decode().splitlines()
+    zeros = [",".join([*line.split(",")[:-3], "0", "0", "0"]) for line in lines[1:]]
+    draft = draft_of(tmp_path, "\n".join([lines[0], *zeros]).encode())
+    assert draft.sheet.title == "RoboDK's calibration measurements"
+    assert draft.markers == ((), {})
+
+
 def test_delmia(tmp_path: Path) -> None:
     draft = draft_of(tmp_path, sample("delmia.txt"))
     assert draft.sheet.title == "a DELMIA tag table"
