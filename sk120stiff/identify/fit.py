@@ -384,15 +384,7 @@ class Fit:
             self.reach(level),
             self.unit,
         )
-        low, high = (bound[:, None] for bound in self.problem.bounds)
-        random = self.moves.random
-        if random.any():  # errors like the noise's: squares add
-            away = np.abs(ends - self.x[:, None])
-            error = self.reach(level) * random[:, None]
-            wider = error**2 / np.maximum(away + np.hypot(away, error), 1e-300)
-            ends = np.clip(ends + wider * [-1.0, 1.0], low, high)
-        elsewhere = np.outer(self.moves.elsewhere, [-1.0, 1.0])
-        ends = np.clip(ends + elsewhere, low, high) if elsewhere.any() else ends
+        ends = self.moves.widened(ends, self.x, self.reach(level), self.problem.bounds)
         scaled = ends * self.problem.scale[:, None]
         return tuple(
             public_interval(parameter.spec, float(low), float(high))

@@ -61,6 +61,23 @@ class Moves:
         """(P,) standard errors that are as likely one way or the other."""
         return np.sqrt(self.left_out**2 + np.diag(self.parts))
 
+    def widened(self, ends: Array, x: Array, reach: float, bounds: tuple[Array, Array]) -> Array:
+        """(P, 2) ends of intervals about estimates (P,) with these moves beside the noise.
+
+        Args:
+            ends: (P, 2) those by the noise alone.
+            x: The estimates.
+            reach: Standard errors that an interval reaches.
+            bounds: (P,) each, that no value goes beyond.
+        """
+        low, high = (bound[:, None] for bound in bounds)
+        random, elsewhere = self.random[:, None], np.outer(self.elsewhere, [-1.0, 1.0])
+        if random.any():  # errors like the noise's: squares add
+            away, error = np.abs(ends - x[:, None]), reach * random
+            wider = error**2 / np.maximum(away + np.hypot(away, error), 1e-300)
+            ends = np.clip(ends + wider * [-1.0, 1.0], low, high)
+        return np.clip(ends + elsewhere, low, high) if elsewhere.any() else ends
+
     @property
     def elsewhere(self) -> Array:
         """(P,) how far from the estimates the values may lie instead, the noise for itself."""
