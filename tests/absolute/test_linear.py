@@ -152,6 +152,21 @@ def test_a_gain_knows_its_evidence_and_what_every_arm_has():
     assert gain(usual, (0, 1), 0).expected and not found.expected
 
 
+def test_another_frame_that_shows_alike_stands_beside_a_frame():
+    """Where other frames are off none is exact, and which of two is off is another question."""
+    robot, made = load_robot("motoman_sk120"), linear(2.0, 3.0)
+    joints = robot.actuated[:3]
+    frames = tuple(effect(robot, "joint_frame", where) for where in joints)
+    alike = made.columns.copy()
+    alike[:, 2] = alike[:, 0] + 0.02 * alike[:, 2]
+    made = replace(made, columns=alike, candidates=(*frames, made.candidates[3]))
+    rivals, probability = alternatives(made, (0, 1), 0)
+    assert rivals == (2,) and probability > 0.99
+    told = standing(made, (0, 1), 0)
+    assert told[frames[0].id] == pytest.approx(told[frames[2].id], abs=0.3)
+    assert alternatives(made, (0, 1), 1)[0] == ()
+
+
 def test_a_cause_joins_by_more_evidence_the_more_were_looked_at():
     """Odds of e³ are asked of each, beyond those of one among four."""
     bar = CLEAR + np.log(4.0)

@@ -53,7 +53,7 @@ def _rivals(
     others = {
         c: linear.score((*rest, c), noise)
         for c in linear.may_join(rest)
-        if c not in chosen and not alone
+        if c not in chosen and (not alone or c in frames)
     }
     rivals = tuple(
         c
