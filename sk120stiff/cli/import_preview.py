@@ -227,7 +227,8 @@ def _against(found: Imported, robot: Robot) -> str:
         return ""
     freed = "the tracker's frame" + (" and the marker's place" if fitted.marker_fitted else "")
     length = arm_length(robot)
-    counted = "readings" if len(set(found.draft.marker_of)) > 1 else "poses"
+    poses = len({found.draft.pose[k] for k in found.fitted_rows})
+    counted = "poses" if poses == fitted.poses else f"readings at {poses} poses"
     return (
         f"Against {robot.name} the positions are {fitted.rms * 1e3:.3g} mm off (rms of "
         f"{fitted.poses} {counted}, {freed} fitted), {fitted.largest * 1e3:.3g} mm at pose "

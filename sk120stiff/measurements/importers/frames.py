@@ -85,15 +85,18 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
     kept = rows[~placing.wild]
     screws = robot.screws(draft.joints.values[kept])
     markers = np.unique(np.array(draft.mounts)[kept], return_inverse=True)[1]
-    stood = stood_of(draft)
+    stood = stood_of(draft)[kept]
+    places = np.column_stack([draft.joints.values[kept], markers, stood])
+    again = len(kept) / len(np.unique(places, axis=0))  # what was read again errs alike
 
     def fit(x: Array) -> Registration | None:
         where, turn = screws.frame_position, screws.rotation
-        return register(
+        found = register(
             x[kept], where, turn, point[kept],
             fit_marker=not known, group=np.zeros_like(markers) if known else markers,
-            station=stood[kept],
+            station=stood,
         )  # fmt: skip
+        return found and dataclasses.replace(found, covariances=found.covariances * again)
 
     fitted = fit(draft.measured)
     other = None if draft.reversed is None else fit(draft.reversed)
