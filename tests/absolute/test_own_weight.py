@@ -63,7 +63,7 @@ def test_springs_of_one_payload_hold_what_the_arm_itself_may_weigh(
 def test_two_payloads_tell_springs_without_it(tmp_path: Path) -> None:
     found = fitted(tmp_path, [0.0, 20.0], 0)
     off, share = springs(found)
-    assert np.abs(off).max() < 3.0 and share[:2].max() < 0.03
+    assert np.abs(off).max() < 3.0 and share[:2].max() < 0.06  # a link that may bend is in it
     (said,) = [note for note in found.notes if "no masses" in note]
     assert "two payloads" not in said
 
