@@ -18,6 +18,7 @@ _JOINTS: WeakKeyDictionary[Robot, tuple[ArmJoint, ...]] = WeakKeyDictionary()
 _SAMPLES: WeakKeyDictionary[Robot, dict[tuple[int, int], Array]] = WeakKeyDictionary()
 CLEAR_OF_DEAD_POINTS = 0.02  # see `LoopCoupling.closes`
 SHORTEST_LINK = 1e-3  # m; what is shorter has no length to bend along
+WHOLE_ARM = 4  # joints that turn: more than a wrist has
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +86,6 @@ def _normal_to(axis: Array, along: Array) -> tuple[Array, Array]:
     return flat, np.cross(axis, flat)
 
 
-WHOLE_ARM = 4  # joints that turn: more than a wrist has
-
-
 def arm_joints(robot: Robot) -> tuple[ArmJoint, ...]:
     """Joints from base to tool, coupled ones included; worked out once for a robot."""
     known = _JOINTS.get(robot)
@@ -119,14 +117,15 @@ def arm_length(robot: Robot) -> float:
 
     A slide that carries a whole arm is its rail: how far that goes says nothing of the arm.
     """
-    total, turning = 0.0, 0
-    for joint in reversed(arm_joints(robot)):
-        total += joint.length
-        turning += joint.revolute
-        k = joint.actuated
-        if k is not None and robot.prismatic[k] and turning < WHOLE_ARM:
-            travel = np.abs([robot.lower[k], robot.upper[k]]).max()
-            total += float(travel) if np.isfinite(travel) else 0.0
+    joints = arm_joints(robot)
+    total = sum(joint.length for joint in joints)
+    for k, joint in enumerate(joints):
+        if joint.revolute or joint.actuated is None:
+            continue
+        carries = sum(other.revolute for other in joints[k:])
+        travel = np.abs([robot.lower[joint.actuated], robot.upper[joint.actuated]]).max()
+        if carries < WHOLE_ARM and np.isfinite(travel):
+            total += float(travel)
     return total
 
 

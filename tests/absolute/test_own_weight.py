@@ -12,6 +12,7 @@ import sk120stiff as sk
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.own_weight import own_weight
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
+from sk120stiff.identify.written import with_values
 from tests.absolute.arm import Array, errors, poses, tracked, write
 from tests.absolute.shared import FIT
 
@@ -62,8 +63,9 @@ def test_springs_of_one_payload_hold_what_the_arm_itself_may_weigh(
 
 def test_two_payloads_tell_springs_without_it(tmp_path: Path) -> None:
     found = fitted(tmp_path, [0.0, 20.0], 0)
-    off, share = springs(found)
-    assert np.abs(off).max() < 3.0 and share[:2].max() < 0.06  # a link that may bend is in it
+    assert np.abs(springs(found)[0]).max() < 3.0
+    off, share = springs(with_values(replace(found, parts=None)))  # links that may bend apart
+    assert np.abs(off).max() < 3.0 and share[:2].max() < 0.03
     (said,) = [note for note in found.notes if "no masses" in note]
     assert "two payloads" not in said
 
