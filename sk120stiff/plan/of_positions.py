@@ -24,6 +24,7 @@ from sk120stiff.plan.cell import Cell
 from sk120stiff.plan.choosing import Chosen, told_apart
 from sk120stiff.plan.design import best_design, refuse_count, that_count
 from sk120stiff.plan.efforts import poses_held
+from sk120stiff.plan.parts_beside import PartsBeside, parts_beside
 from sk120stiff.plan.places import Places
 from sk120stiff.plan.planned import LITTLE, POSES, TOO_LITTLE, Expected, Plan, drivable
 from sk120stiff.plan.pool import poses_in, same_pose
@@ -67,19 +68,29 @@ class PlanOfPositions(Plan):
             return ()
         span = {p.name: self.candidates.problem.reach(p) for p in self.model.parameters}
         own = dict(zip(design.parameters, design.std.tolist(), strict=True))
+        names = [self.model.names[k] for k in self.candidates.problem.model.free]
         cases, found = load_cases_of(self.model.robot, self), list[Expected]()
         for name in self.chosen.names:
             parameter, std = self.model.parameter(name), own.get(name, np.inf)
-            why = untold.get(name)
+            why, mostly = untold.get(name), ""
             share = (std / span[name]) ** 2  # of what was plausible before: 1, nothing is told
             if why is None and not share < LITTLE:
                 std, why = np.inf, TOO_LITTLE
                 if parameter.effect.joint_spring and why_unseen(cases, parameter):
                     why = NOTHING_BENDS
-            elif why is None:
-                std /= float(np.sqrt(1.0 - share))
-            found.append(Expected(parameter, std, why))
+            rigid = std
+            if why is None:
+                k = names.index(name)
+                rigid /= float(np.sqrt(1.0 - share))
+                std = float(np.hypot(rigid, np.sqrt(self.parts.variance[k])))
+                mostly = self.parts.most[k] if std**2 > 2.0 * rigid**2 else ""
+            found.append(Expected(parameter, std, why, rigid, mostly))
         return tuple(found)
+
+    @cached_property
+    def parts(self) -> PartsBeside:
+        """What links, bearings and floors that may yield add to the ± of `expected`."""
+        return parts_beside(self.candidates, self.chosen.rows, self.seed)
 
     @cached_property
     def foretold(self) -> float:
@@ -212,8 +223,6 @@ def plan_positions(
     if len(idle):
         masses = ", ".join(f"{mass:g} kg" for mass in idle)
         remarks = (*remarks, f"No reading hangs {masses} on the tool: the others tell more.")
-    if any(pool.problem.model.parameter(name).effect.joint_spring for name in wanted):
-        remarks = (*remarks, RIGID)
     numbers, values = pool.numbers(len(chosen.rows)), len(pool.problem.model.free)
     if numbers < values:
         remarks = (
@@ -228,10 +237,6 @@ def plan_positions(
     )  # fmt: skip
 
 
-RIGID = (
-    "The ± of springs are those of an arm whose links and bearings are rigid: what these may yield "
-    "beside is in the ± of a fit, as far as its readings leave it open."
-)
 SOURCE = "poses and payloads chosen by 'sk120stiff plan'"
 
 

@@ -41,11 +41,17 @@ class Expected:
     Attributes:
         std: Standard error of the internal value; infinite where it tells less than is plausible.
         reason: Why it cannot be seen; None: it can.
+        if_rigid: The same of an arm of which no part yields beside what the model has; of
+            displacements, where a plan counts no others, `std` itself.
+        mostly: The part of which most of a spring's `std` is, since it may yield in its place
+            (``name:where``); empty: none.
     """
 
     parameter: Parameter
     std: float
     reason: str | None
+    if_rigid: float
+    mostly: str = ""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -102,7 +108,7 @@ class Plan(Measurements):
             why = why_unseen(load_cases, parameter)
             if why is None and not np.isfinite(std[name]):
                 why = self.chosen.untold.get(name, TOO_LITTLE)
-            out.append(Expected(parameter, std[name], why))
+            out.append(Expected(parameter, std[name], why, std[name]))
         return tuple(out)
 
 

@@ -49,15 +49,18 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
     assert told
     model = read_model(MODEL)
     whole = sk.fit(model, sk.read(made))
-    rigid = with_values(replace(whole, parts=None)).model  # as the plan says: links do not yield
+    rigid = with_values(replace(whole, parts=None)).model
     for expected in told:
         name = expected["name"]
         # What the unstated weight of the arm would move the value by counts in it as well.
-        assert 0.95 * expected["std"] < rigid.parameter(name).std < 1.2 * expected["std"], name
+        alone = expected["std_if_rigid"]
+        assert 0.95 * alone < rigid.parameter(name).std < 1.2 * alone, name
         said = identified[name]["std"]
+        assert 0.5 * expected["std"] < said < 2.0 * expected["std"], name  # of one draw
         assert said == pytest.approx(whole.model.parameter(name).std, rel=1e-6)
         assert said > rigid.parameter(name).std
-    assert any("links and bearings are rigid" in said for said in found["remarks"])
+    mostly = {each["name"]: each["mostly"] for each in told}
+    assert mostly["joint_springs:joint_3_u.stiffness"] == "link_bending:link_3_u"
     more = run(
         "plan", MODEL, "--data", made, "--count", "3", "--candidates", "60", "--json"
     ).document

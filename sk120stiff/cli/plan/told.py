@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.cli.tables import plan_table, table
+from sk120stiff.errors import listed
 from sk120stiff.plan import Plan, PlanOfPositions
 
 Told = tuple[dict[str, object], list[object]]
@@ -36,6 +37,7 @@ def _parameters(plan: Plan) -> Told:
     expected: list[dict[str, object]] = []
     rows: list[tuple[object, ...]] = []
     blind: list[object] = []
+    beside: list[str] = []
     for item in plan.expected:
         p, why = item.parameter, item.reason
         public, unit = p.spec.public_std(p.internal, item.std), p.spec.unit
@@ -44,16 +46,20 @@ def _parameters(plan: Plan) -> Told:
                 "name": p.name,
                 "value": p.value,
                 "std": None if why else public,
+                "std_if_rigid": None if why else p.spec.public_std(p.internal, item.if_rigid),
                 "unit": unit,
                 "internal_std": None if why else item.std,
                 "internal_unit": p.spec.internal_unit,
                 "reason": why,
+                "mostly": item.mostly or None,
             }
         )
         if why:
             blind.append(f"{p.name} cannot be seen: {why}.")
             rows.append((p.name, p.value, "cannot be seen", unit))
             continue
+        if item.mostly:
+            beside.append(f"{p.effect.id} ({item.mostly})")
         if p.effect.joint_spring and item.std > p.internal:
             blind.append(f"{p.name} will hardly be told: its error is larger than itself.")
         shown = (public, unit) if np.isfinite(public) else (item.std, p.spec.internal_unit)
@@ -76,6 +82,12 @@ def _parameters(plan: Plan) -> Told:
         said.append(
             f"Where the marker stands will be foretold to {size} (standard error per axis, over "
             "all poses to choose from), as far as the model's laws hold."
+        )
+    if beside:
+        blind.append(
+            f"Most of the standard error of {listed(beside)} is what the part in brackets may "
+            "yield in its place: other payloads, or poses that load the two differently, tell "
+            "them apart."
         )
     return document, [*said, *blind]
 

@@ -25,6 +25,7 @@ from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.written import with_values
 
 MOST = 0.5  # of a spring that may be a part's beside it: gears are softer
+DRAWS = 200  # of the noise that readings will have
 ROUNDING = 1e-9  # of the largest singular value, below which columns tell nothing new
 
 
@@ -46,7 +47,7 @@ def beside_parts(
         return found
 
     def wanted(cause: Effect) -> bool:
-        part = _yields(cause) and not {cause.id, cause.name} & set(without)
+        part = yields(cause) and not {cause.id, cause.name} & set(without)
         return part or cause.id in found.lacks
 
     blocks, moving = Blocks.of(found, catalogue, wanted), ~found.at_bound
@@ -58,21 +59,42 @@ def beside_parts(
     kept = np.hstack([-found.jacobian[:, moving], beyond]) / found.unit
     prior = np.concatenate([1.0 / found.problem.prior[moving] ** 2, np.ones(beyond.shape[1])])
     ways = np.hstack([blocks.whole[k] for k in parts]) / found.unit
-    takes = np.zeros((ways.shape[1], len(found.x)))  # of the estimates, by unit size of each
-    covariance = posterior(kept, prior, np.zeros(len(kept)))[1]
-    takes[:, moving] = (covariance @ (kept.T @ ways))[: moving.sum()].T
-    Q = orthonormal(np.hstack([blocks.base, beyond]), ROUNDING)
-    shown = beside(Q, ways)
+    takes = np.zeros((ways.shape[1], len(found.x)))
+    takes[:, moving] = taken(kept, prior, ways)[:, : moving.sum()]
+    shown = beside(orthonormal(np.hstack([blocks.base, beyond]), ROUNDING), ways)
+    share = np.abs(takes[:, springs] / found.x[springs]).max(axis=1)
     told = shown.T @ (found.residual / found.unit)
-    spread = 1.0 / (1.0 + (shown**2).sum(axis=0))
-    evidence, square = half_normal(spread * told, spread)
-    size = np.sqrt(square) * np.abs(takes[:, springs] / found.x[springs]).max(axis=1)
-    weight = as_one(expit(evidence), shown) * (1.0 - spread)
-    weight *= square * np.minimum(1.0, MOST / np.maximum(size, 1e-300)) ** 2
-    moves = np.sqrt(weight)[:, None] * takes
+    moves = np.sqrt(weights(shown, share, told))[:, None] * takes
     effects = [blocks.causes[k] for k in parts for _ in blocks.causes[k].parameters]
     notes = (*found.notes, *_mostly_by(found, effects, moves))
     return with_values(replace(found, parts=moves.T @ moves, notes=notes))
+
+
+def taken(kept: Array, prior: Array, ways: Array) -> Array:
+    """(K, P) what estimates with derivative (M, P) and prior (P,) take of parts (M, K)."""
+    covariance = posterior(kept, prior, np.zeros(len(kept)))[1]
+    return np.asarray((covariance @ (kept.T @ ways)).T)
+
+
+def weights(shown: Array, share: Array, told: Array) -> Array:
+    """(K,) mean squares of parts in units of their usual sizes, as readings leave them.
+
+    Args:
+        shown: (M, K) what of them shows beside all that is estimated, in units of what is left.
+        share: (K,) of a spring that each would be at its usual size, at the most.
+        told: (K,) its product with what is left.
+    """
+    spread = 1.0 / (1.0 + (shown**2).sum(axis=0))
+    evidence, square = half_normal(spread * told, spread)
+    weight = as_one(expit(evidence), shown) * (1.0 - spread)
+    size = np.sqrt(square) * share
+    return np.asarray(weight * square * np.minimum(1.0, MOST / np.maximum(size, 1e-300)) ** 2)
+
+
+def expected_weights(shown: Array, share: Array, rng: np.random.Generator) -> Array:
+    """`weights` as they will be where parts are rigid: their mean over draws of the noise."""
+    told = rng.standard_normal((DRAWS, len(shown))) @ shown
+    return np.asarray(np.mean([weights(shown, share, each) for each in told], axis=0))
 
 
 def half_normal(mean: Array, spread: Array) -> tuple[Array, Array]:
@@ -100,7 +122,8 @@ def as_one(likely: Array, shown: Array) -> Array:
     return np.asarray(likely * any_of_them / np.maximum(alike @ likely, 1e-300))
 
 
-def _yields(cause: Effect) -> bool:
+def yields(cause: Effect) -> bool:
+    """Is it a part that a calibration leaves rigid, and no spring of a joint?"""
     compliant = isinstance(cause, LinearElastic) and not cause.joint_spring
     return compliant and all(spec.lower == 0.0 for spec in cause.parameters)
 
