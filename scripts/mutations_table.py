@@ -32,7 +32,7 @@ FAULTS: tuple[Fault, ...] = (
         outliers_of_flanks_for_ever=("while len(still :=", "while 99 + 0 * len(still :="),
     ),
     *of(
-        "measurements/branches.py", *tests("measurements", "branches"),
+        "measurements/table/branches.py", *tests("measurements/table", "branches"),
         a_foot_that_belongs_to_the_fall=("starts.append(row - 1 if again else row)", "starts.append(row)"),
     ),
     *of(
@@ -108,7 +108,7 @@ FAULTS: tuple[Fault, ...] = (
         twist_about_the_wrong_side=("cross_product(self.axes, self.position[..., None, :] - self.origins)", "cross_product(self.position[..., None, :] - self.origins, self.axes)"),
     ),
     *of(
-        "measurements/noise.py", *tests("measurements", "noise", "repeats"),
+        "measurements/noise/law.py", *tests("measurements/noise", "noise", "repeats"),
         zero_reading_without_noise=("own, zero / measurements.zero_count", "own, 0.0 * zero / measurements.zero_count"),
         zero_readings_not_averaged=("own, zero / measurements.zero_count", "own, zero / measurements.zero_count ** 0"),
         growth_not_squared=("own + (self.growth * _sizes(measurements, sizes)) ** 2",
@@ -118,14 +118,14 @@ FAULTS: tuple[Fault, ...] = (
         weights_upside_down=("own = own / weights[:, None]", "own = own * weights[:, None]"),
     ),
     *of(
-        "measurements/line_of_sight.py", *tests("measurements", "line_of_sight"),
+        "measurements/noise/line_of_sight.py", *tests("measurements/noise", "line_of_sight"),
         across_counted_once=("0.5 * (variances[whole].sum(axis=1) - size**2)", "variances[whole].sum(axis=1) - size**2"),
         rays_of_any_law=("if off[0] > min(OFF, TELLS * varies):", "if off[0] > 10.0:"),
         rays_that_may_be_others=("apart > SAME_RAY:", "apart > 9.0:"),
         distance_not_squared=("np.repeat(distance**2, 3)", "np.repeat(distance, 3)"),
     ),
     *of(
-        "measurements/whitening.py", *tests("measurements", "noise"), *FIT,
+        "measurements/noise/whitening.py", *tests("measurements/noise", "noise"), *FIT,
         shared_zero_counted_too_little=("gain = c / (1.0 + c *", "gain = c / (2.0 + c *"),
         variance_without_the_shared_part=("variance = own[rows] + gain", "variance = own[rows]"),
         whitening_with_the_wrong_sign=("block = block - gain", "block = block + gain"),
@@ -361,12 +361,12 @@ FAULTS: tuple[Fault, ...] = (
         masses_that_hang_on_a_gears_curve=("adjoint @ (rest.weight.compliance @ stated", "adjoint @ (rest.compliance @ stated"),
     ),
     *of(
-        "measurements/placing_slips.py", *tests("measurements", "conventions"),
+        "measurements/placing/slips.py", *tests("measurements/placing", "conventions"),
         joints_mended_one_by_one=("ranked[:KEPT]", "ranked[:1]"),
         joints_beyond_their_limits=("return beyond, int(", "return 0, int("),
     ),
     *of(
-        "measurements/importers/several_markers.py", *tests("measurements/importers", "several_markers"),
+        "measurements/importers/tracker/several_markers.py", *tests("measurements/importers/tracker", "several_markers"),
         markers_read_as_one=("if column is not None and len(names) > 1:", "if False:"),
         points_apart_unseen=("if far and len(far) > MOST * len(pairs):", "if False:"),
     ),

@@ -16,7 +16,7 @@ from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
 from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements.importers import Told, import_readings
-from sk120stiff.measurements.importers.masses_in_words import mass_told
+from sk120stiff.measurements.importers.loads.masses_in_words import mass_told
 from sk120stiff.units import parse_values
 
 

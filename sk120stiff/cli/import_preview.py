@@ -11,9 +11,9 @@ import numpy as np
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import listed
 from sk120stiff.measurements.importers import Column, Imported, Sheet, Told
+from sk120stiff.measurements.importers.columns.words import kind_of
 from sk120stiff.measurements.importers.contract import Unpaired
-from sk120stiff.measurements.importers.words import kind_of
-from sk120stiff.measurements.registration import Registration
+from sk120stiff.measurements.placing.registration import Registration
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import arm_length
 from sk120stiff.robot.rotations import rotation_vector

@@ -34,7 +34,7 @@ def declare_readings(out: Path | None) -> None:
     Raises:
         InputError: One of the two is an input, or cannot be written.
     """
-    from sk120stiff.measurements.writing import check_name
+    from sk120stiff.measurements.files.writing import check_name
 
     if out is not None:
         check_name(out)

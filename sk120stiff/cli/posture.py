@@ -19,7 +19,7 @@ from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
-from sk120stiff.measurements.columns import FORCES, MOMENTS
+from sk120stiff.measurements.table.columns import FORCES, MOMENTS
 from sk120stiff.model import Model, seen_from
 from sk120stiff.plan import Verdict, feasible, lowest_points
 from sk120stiff.programs.orientation import fixed_xyz

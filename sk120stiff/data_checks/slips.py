@@ -16,8 +16,8 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.data_checks.correction import Correction
 from sk120stiff.data_checks.sheet import Sheet
-from sk120stiff.measurements.angle_units import mixed
 from sk120stiff.measurements.data import Frame
+from sk120stiff.measurements.table.angle_units import mixed
 
 AXES = "xyz"
 #: factors by which one axis may have been written in another unit of length

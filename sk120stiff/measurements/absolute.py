@@ -14,7 +14,7 @@ from sk120stiff import units
 from sk120stiff.arrays import Array, Index
 from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements.channels import Channels
-from sk120stiff.measurements.columns import (
+from sk120stiff.measurements.table.columns import (
     ANCHORS,
     DIRECTIONS,
     DISPLACEMENTS,
@@ -26,10 +26,10 @@ from sk120stiff.measurements.columns import (
     UNCERTAINTIES,
     Roles,
 )
-from sk120stiff.measurements.table import Table
+from sk120stiff.measurements.table.table import Table
 
 if TYPE_CHECKING:
-    from sk120stiff.measurements.settings import SettingsFile
+    from sk120stiff.measurements.table.settings import SettingsFile
 
 STEEP = np.radians(85.0)  # an inclination beyond tells nothing more
 SAME_POSE = 1e-3  # rad or m: encoder values of one pose that differ by less are of one pose

@@ -64,7 +64,7 @@ class Channels:
         sigma: Standard uncertainty of each kind of channel as stated [m or rad].
         sigma_of_rows: (N, 3) standard uncertainty of each position or displacement [m], or None.
         rays: (N, 3, 3) unit vectors, as rows, along which the numbers of a position are told, see
-            `rays.py`; None: along the axes.
+            `noise/rays.py`; None: along the axes.
     """
 
     position: Array | None = None

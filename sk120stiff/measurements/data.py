@@ -58,7 +58,7 @@ class Measurements(Tabular):
             sharing within a pose would mean).
         sigma: (N, 3) standard uncertainty of each loaded reading, m (NaN where not read), or None.
         along: (N, 3) standard uncertainty along the ray of the instrument, as a vector along it, m,
-            base axes; NaN: errors of the three axes are independent (`line_of_sight.py`).
+            base axes; NaN: errors of the three axes are independent (`noise/line_of_sight.py`).
         order, time, branch, repeat: When and how each row was read, or None. `branch` holds load,
             unload or "".
         use: (N,) False masks a row. Nothing is deleted.

@@ -36,8 +36,8 @@ class Tabular:
         require("pandas", needed_for="a data frame")
         import pandas as pd
 
-        from sk120stiff.measurements.columns import DISPLACEMENTS
-        from sk120stiff.measurements.writing import columns_of
+        from sk120stiff.measurements.files.writing import columns_of
+        from sk120stiff.measurements.table.columns import DISPLACEMENTS
 
         readings = cast("Measurements", self)
         own = {
@@ -80,9 +80,9 @@ class Tabular:
             >>> sk.Measurements.from_frame(frame[frame["pose"] == "1"], robot="motoman_sk120").poses
             ('1',)
         """
-        from sk120stiff.measurements import reading
-        from sk120stiff.measurements.settings import settings_of
-        from sk120stiff.measurements.table import table_of
+        from sk120stiff.measurements.files import reading
+        from sk120stiff.measurements.table.settings import settings_of
+        from sk120stiff.measurements.table.table import table_of
 
         header = [str(name) for name in frame.columns]
         given = frame.astype(object).where(frame.notna(), "")

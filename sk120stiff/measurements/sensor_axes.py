@@ -12,7 +12,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 
 if TYPE_CHECKING:
-    from sk120stiff.measurements.settings import SettingsFile
+    from sk120stiff.measurements.table.settings import SettingsFile
 
 FORCE, MOMENT = slice(3), slice(3, 6)  # of a wrench
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
-from sk120stiff.measurements.table import Table, read_table
+from sk120stiff.measurements.table.table import Table, read_table
 from sk120stiff.robot.bundled import bundled_robots
 
 #: Section VI: ranges of the first three joints, and the step through them [rad].

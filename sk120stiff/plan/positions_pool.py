@@ -28,9 +28,9 @@ from sk120stiff.identify.absolute.start import loaded, started
 from sk120stiff.measurements import Channels, Measurements, NoiseModel
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import ANGLES
-from sk120stiff.measurements.placing import Placing
+from sk120stiff.measurements.noise.rays import anywhere
+from sk120stiff.measurements.placing.placing import Placing
 from sk120stiff.measurements.poses import labels_to_come
-from sk120stiff.measurements.rays import anywhere
 from sk120stiff.model import Model
 from sk120stiff.plan.discriminate import Rivalry, over_ranges, with_both
 from sk120stiff.plan.planned import LITTLE, USUAL

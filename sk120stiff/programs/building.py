@@ -12,7 +12,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.joint_map import parse_linear
+from sk120stiff.measurements.table.joint_map import parse_linear
 from sk120stiff.programs.controller import controller_frame, is_elsewhere, places
 from sk120stiff.programs.language import Language
 from sk120stiff.programs.program import Program

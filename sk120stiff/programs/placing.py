@@ -6,7 +6,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.table import table_of
+from sk120stiff.measurements.table.table import table_of
 from sk120stiff.programs.orientation import fixed_xyz
 from sk120stiff.programs.toolpath import ToolPath
 from sk120stiff.robot.rotations import homogeneous, rotation_from_rpy, rotation_of

@@ -24,8 +24,8 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.files import csv_text, write_atomically
-from sk120stiff.measurements.columns import DISPLACEMENTS, FORCES, MOMENTS, POSITIONS
-from sk120stiff.measurements.table import Table, read_table
+from sk120stiff.measurements.table.columns import DISPLACEMENTS, FORCES, MOMENTS, POSITIONS
+from sk120stiff.measurements.table.table import Table, read_table
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_from_rpy, rotation_vector
 from sk120stiff.stiffness.wrench import rotate

@@ -8,7 +8,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.measurements.table import read_table
+from sk120stiff.measurements.table.table import read_table
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Cell, Places, feasible
 from sk120stiff.robot import Robot

@@ -20,7 +20,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.table import read_table
+from sk120stiff.measurements.table.table import read_table
 from sk120stiff.workspace.path import LoadedPath
 
 RUNS = ("before", "after")

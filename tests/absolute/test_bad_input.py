@@ -15,7 +15,7 @@ from sk120stiff.cli.main import main
 from sk120stiff.errors import InputError
 from sk120stiff.identify.absolute.words import findings
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.placing import Placing, place
+from sk120stiff.measurements.placing.placing import Placing, place
 from sk120stiff.robot import Robot
 from tests.absolute.arm import Array, tracked
 from tests.hidden.generator.robots import random_arm

@@ -9,7 +9,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.placing import place
+from sk120stiff.measurements.placing.placing import place
 from tests.absolute.arm import NAMES, Array, errors, poses, tracked, write
 from tests.absolute.test_stations import AWAY, ELSEWHERE, FIT, NOISE, SIGMA, half, read
 

@@ -15,7 +15,7 @@ from sk120stiff.explain.absolute.document import verdict_of_positions
 from sk120stiff.explain.absolute.next_step import headline
 from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.placing import place
+from sk120stiff.measurements.placing.placing import place
 from tests.absolute.arm import NAMES, errors, poses, tracked, write
 from tests.absolute.shared import FIT
 

@@ -13,7 +13,7 @@ from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.repeats import borne_out
+from sk120stiff.measurements.noise.repeats import borne_out
 from tests.explain.readings import NOISE, SIGMA, answered, base_fit, hidden
 
 WAY = np.array([0.6, -0.5, 0.62])

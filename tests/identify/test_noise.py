@@ -18,7 +18,7 @@ from sk120stiff.identify import (
 )
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import NoiseModel, NoiseStatement
-from sk120stiff.measurements.repeats import repeated
+from sk120stiff.measurements.noise.repeats import repeated
 from sk120stiff.plan import Schedule
 from tests.identify.conftest import readings_of, without_statement
 

@@ -10,7 +10,7 @@ from sk120stiff.identify import Fit, fit
 from sk120stiff.identify.uncertainty.laid_out import LaidOut
 from sk120stiff.identify.uncertainty.variance_components import Deviance, variance_components
 from sk120stiff.measurements import Measurements, ModelForm, NoiseModel
-from sk120stiff.measurements.model_form import EXACT
+from sk120stiff.measurements.noise.model_form import EXACT
 from sk120stiff.model import Model
 from tests.identify.conftest import readings_of
 

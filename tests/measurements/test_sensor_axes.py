@@ -7,8 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
+from sk120stiff.measurements.files.writing import write_measurements
 from sk120stiff.measurements.sensor_axes import axes_line
-from sk120stiff.measurements.writing import write_measurements
 
 HEAD = "pose,q1[deg],fx[N],fy[N],fz[N],mx[N*m],my[N*m],mz[N*m],dx[mm],dy[mm],dz[mm]\n"
 ROWS = "1,10,100,-50,30,1,2,3,0.1,0.2,0.3\n2,40,-20,70,300,-4,5,6,0.2,0.1,0.4\n"

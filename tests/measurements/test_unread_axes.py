@@ -13,7 +13,7 @@ from sk120stiff.measurements import (
     read_measurements,
     write_measurements,
 )
-from sk120stiff.measurements.repeats import repeated
+from sk120stiff.measurements.noise.repeats import repeated
 
 HEAD = "pose,q[deg],fx[N],fy[N],fz[N],{}\n"
 SIGMA = 10e-6

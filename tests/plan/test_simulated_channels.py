@@ -14,7 +14,7 @@ from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.measurements import Measurements
 from tests.absolute.arm import Arm, poses, write
 from tests.absolute.loaded_arm import SPRINGS, moved, write_moved
-from tests.measurements.test_write_positions import KINDS, written
+from tests.measurements.files.test_write_positions import KINDS, written
 
 LENGTH, ANGLE = 1e-5, 3e-5
 POINT = "point: {xyz: [150, 0, 100], unit: mm}\n"

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.table import table_of
+from sk120stiff.measurements.table.table import table_of
 from sk120stiff.plan import Route
 from sk120stiff.programs import LANGUAGES
 from sk120stiff.programs.building import build

@@ -9,7 +9,7 @@ from typing import TypedDict
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, effect
 from sk120stiff.errors import InputError, listed
-from sk120stiff.measurements.importers.masses_in_words import mass_told
+from sk120stiff.measurements.importers.loads.masses_in_words import mass_told
 from sk120stiff.model import Model
 from sk120stiff.units import parse_values
 

@@ -17,8 +17,8 @@ from sk120stiff.cli.tables import table
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.settings import find_settings
-from sk120stiff.measurements.table import read_table
+from sk120stiff.measurements.table.settings import find_settings
+from sk120stiff.measurements.table.table import read_table
 from sk120stiff.model import joint_spring_model
 from sk120stiff.plan import Cell, assumptions, feasible, jumps
 from sk120stiff.plan.rig import HANGING

@@ -13,8 +13,8 @@ from sk120stiff.explain.candidates.aliases import imitators
 from sk120stiff.explain.options import Options
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.noise.rays import anywhere
 from sk120stiff.measurements.poses import labels_to_come
-from sk120stiff.measurements.rays import anywhere
 from sk120stiff.plan import Cell, Rig, cell_from_data, random_pool
 from sk120stiff.plan.discriminate import with_both
 from sk120stiff.plan.positions_pool import rivalry_of, to_be_read

@@ -23,7 +23,7 @@ from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
-from sk120stiff.measurements.model_form import ModelForm
+from sk120stiff.measurements.noise.model_form import ModelForm
 
 ROUNDS = 3  # of estimating, searching and judging
 WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is merely larger

@@ -31,7 +31,7 @@ from sk120stiff.identify import Fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.uncertainty.laid_out import LaidOut
 from sk120stiff.identify.uncertainty.variance_components import Deviance
-from sk120stiff.measurements.model_form import ModelForm
+from sk120stiff.measurements.noise.model_form import ModelForm
 
 DIFFER = 0.5  # spread of its size over the poses, relative to it, from which on it is no constant
 BEYOND_CHANCE = 9.55  # gain in -2 ln L that chance brings in one of a thousand, half a χ² of one

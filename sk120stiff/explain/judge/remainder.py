@@ -21,7 +21,7 @@ from sk120stiff.explain.priors import SOMETHING_ELSE
 from sk120stiff.identify import Fit
 from sk120stiff.identify.uncertainty.left_over import LeftOver, going_with, left_over
 from sk120stiff.identify.uncertainty.variance_components import Components
-from sk120stiff.measurements.model_form import ModelForm
+from sk120stiff.measurements.noise.model_form import ModelForm
 
 LEVEL = 1e-3  # below this probability of noise alone something is left
 

@@ -19,7 +19,7 @@ from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
 from sk120stiff.identify.solving import widened_as
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
-from sk120stiff.measurements.noise import FINEST
+from sk120stiff.measurements.noise.law import FINEST
 
 
 class Try(Protocol):

@@ -19,7 +19,7 @@ from sk120stiff.explain.select.outliers import LEAST_LEFT, everything, robust_sc
 from sk120stiff.identify import Fit, Problem, solve_near
 from sk120stiff.identify.solve.polish import Evaluate, polish
 from sk120stiff.measurements import FormWhitener
-from sk120stiff.measurements.model_form import ModelForm
+from sk120stiff.measurements.noise.model_form import ModelForm
 
 TAILS = 4.0  # degrees of freedom, the usual choice where they are not estimated
 FACTORS = np.exp(np.linspace(-3.0, 4.0, 141))  # on a pose's variance, that are tried

@@ -21,7 +21,7 @@ from sk120stiff.explain.select.own_sizes import own_sizes, price_of_factors
 from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.identify import Fit, Problem, fit, solve, solve_near
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.repeats import borne_out
+from sk120stiff.measurements.noise.repeats import borne_out
 from sk120stiff.model import Model
 
 TRIED = 1  # models whose fit may be refused before smaller ones are tried

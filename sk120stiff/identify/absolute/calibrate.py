@@ -35,10 +35,10 @@ from sk120stiff.identify.absolute.waves import beside_waves, doubtful, waves_tha
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solving import as_fit
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.placing import Placing, place
-from sk120stiff.measurements.placing_levels import refuse_other_levels
+from sk120stiff.measurements.placing.levels import refuse_other_levels
+from sk120stiff.measurements.placing.placing import Placing, place
+from sk120stiff.measurements.placing.turned import targets_on_tool
 from sk120stiff.measurements.stated_sizes import doubtful_sizes
-from sk120stiff.measurements.turned import targets_on_tool
 from sk120stiff.model import Model, counted_from
 from sk120stiff.robot.rotations import rotation_of
 

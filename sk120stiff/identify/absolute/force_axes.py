@@ -21,9 +21,9 @@ from sk120stiff.identify.absolute.beside_frames import BesideFrames, beside_fram
 from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.absolute.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.columns import FORCES
 from sk120stiff.measurements.data import Frame
 from sk120stiff.measurements.sensor_axes import Rpy, axes_line
+from sk120stiff.measurements.table.columns import FORCES
 
 HALF = 0.5  # of the square of what is left, below which other axes must bring it; of all there is
 BEYOND_DOUBT = 10.0  # logarithm of the odds for them

@@ -14,8 +14,8 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
 from sk120stiff.identify.absolute.start import REGISTERED, options_of
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.placing import stands_for_all
-from sk120stiff.measurements.registration import Registration, register
+from sk120stiff.measurements.placing.placing import stands_for_all
+from sk120stiff.measurements.placing.registration import Registration, register
 from sk120stiff.model import Model, Parameter
 from sk120stiff.model.pose_reading import read_poses
 from sk120stiff.robot.rotations import rotation_vector

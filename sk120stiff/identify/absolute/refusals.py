@@ -9,8 +9,8 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.absolute.noise_sizes import START, of_poses
 from sk120stiff.identify.fit import Fit
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.placing import Placing
-from sk120stiff.measurements.placing_distances import EACH
+from sk120stiff.measurements.placing.distances import EACH
+from sk120stiff.measurements.placing.placing import Placing
 from sk120stiff.robot.anatomy import arm_length
 
 ASTRAY = 5.0  # times what the rigid arm leaves, placed under the lightest load

@@ -12,7 +12,7 @@ from sk120stiff.effects.options import Options
 from sk120stiff.effects.payload_mass import distinct
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
-from sk120stiff.measurements.placing import Placing
+from sk120stiff.measurements.placing.placing import Placing
 from sk120stiff.model import Model, Parameter
 
 REGISTERED = "registered"

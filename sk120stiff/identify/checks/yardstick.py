@@ -22,8 +22,8 @@ from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.left_over import left_over, orthonormal
 from sk120stiff.identify.checks.saturated import load_basis, pose_columns
 from sk120stiff.identify.fit import Fit
-from sk120stiff.measurements.noise import FINEST
-from sk120stiff.measurements.repeats import ENOUGH
+from sk120stiff.measurements.noise.law import FINEST
+from sk120stiff.measurements.noise.repeats import ENOUGH
 
 Source = Literal["stated", "repeats", "scatter", "computed", "unknown"]
 CONTRADICTED = 3.0  # times a stated σ from where on it is no slight optimism but a wrong number

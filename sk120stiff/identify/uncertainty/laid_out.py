@@ -9,7 +9,7 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.problem import Problem
-from sk120stiff.measurements.model_form import EXACT, form_columns, rows_of_poses
+from sk120stiff.measurements.noise.model_form import EXACT, form_columns, rows_of_poses
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,9 @@
 """What a fit leaves beyond the noise, as one number with an interval: its remainder.
 
 Every file and page has it from here: predictions, verdict and report. The gap of the fitted model
-is laid out as model-form error beside the noise (`measurements/model_form.py`), with its sizes by
-restricted likelihood: what is left is the size of the random effects that these readings met.
+is laid out as model-form error beside the noise (`measurements/noise/model_form.py`), with its
+sizes by restricted likelihood: what is left is the size of the random effects that these readings
+met.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from sk120stiff.identify.uncertainty.variance_components import (
     Deviance,
     likeliest_components,
 )
-from sk120stiff.measurements.model_form import ModelForm
+from sk120stiff.measurements.noise.model_form import ModelForm
 
 INTERVAL = float(stats.chi2.isf(0.05, 1))  # rise of -2 ln L at the ends of a 95 % interval
 ONE = 1.0  # rise of -2 ln L one standard error away

@@ -20,7 +20,7 @@ from scipy.optimize import brentq, minimize
 from sk120stiff.arrays import Array
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.uncertainty.laid_out import LaidOut, seen_directions
-from sk120stiff.measurements.model_form import EXACT, ModelForm
+from sk120stiff.measurements.noise.model_form import EXACT, ModelForm
 
 PROPORTIONS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)  # of a pose's compliance, where the search starts
 ROUNDING = 1e-13  # of the largest random effect, so that none outweighs the noise by rounding

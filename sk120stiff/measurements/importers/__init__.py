@@ -5,7 +5,7 @@ content alone, and how it reads it. ``FORMATS + (Mine(),)`` knows one more.
 """
 
 from sk120stiff.measurements.importers.contract import Column, Formats, Guess, Sheet, Source
-from sk120stiff.measurements.importers.formats import FORMATS
+from sk120stiff.measurements.importers.formats.catalogue import FORMATS
 from sk120stiff.measurements.importers.run import Imported, import_readings
 from sk120stiff.measurements.importers.told import Told
 

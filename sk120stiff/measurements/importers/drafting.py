@@ -10,15 +10,15 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.columns import POSITIONS, QUATERNION, UNCERTAINTIES
 from sk120stiff.measurements.importers.clock import EITHER_WAY, since_1970, since_first
-from sk120stiff.measurements.importers.compound_columns import COMMANDED_JOINT
+from sk120stiff.measurements.importers.columns.compound_groups import COMMANDED_JOINT
+from sk120stiff.measurements.importers.columns.joints import JointColumns, joint_columns
+from sk120stiff.measurements.importers.columns.matrices import MATRIX_END
+from sk120stiff.measurements.importers.columns.orientations import orientation_columns
+from sk120stiff.measurements.importers.columns.pose_labels import pose_labels
+from sk120stiff.measurements.importers.columns.unread_axes import displacements
 from sk120stiff.measurements.importers.contract import Column, Sheet
-from sk120stiff.measurements.importers.joints import JointColumns, joint_columns
-from sk120stiff.measurements.importers.loads import Loads, lightest, loads_of
-from sk120stiff.measurements.importers.matrix_columns import MATRIX_END
-from sk120stiff.measurements.importers.orientation_columns import orientation_columns
-from sk120stiff.measurements.importers.pose_labels import pose_labels
+from sk120stiff.measurements.importers.loads.loads import Loads, lightest, loads_of
 from sk120stiff.measurements.importers.told import (
     Told,
     numbers,
@@ -29,7 +29,7 @@ from sk120stiff.measurements.importers.told import (
     two_units,
     unit_of,
 )
-from sk120stiff.measurements.importers.unread_axes import displacements
+from sk120stiff.measurements.table.columns import POSITIONS, QUATERNION, UNCERTAINTIES
 
 Written = tuple[tuple[str, tuple[str, ...]], ...]
 LABELS = ("order", "marker", "series", "station", "branch", "repeat")  # taken over as they stand

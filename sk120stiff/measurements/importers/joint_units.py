@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.errors import listed
-from sk120stiff.measurements.angle_units import mixed
+from sk120stiff.measurements.importers.columns.words import unit_of_header
 from sk120stiff.measurements.importers.drafting import Draft
-from sk120stiff.measurements.importers.words import unit_of_header
+from sk120stiff.measurements.table.angle_units import mixed
 from sk120stiff.robot import Robot
 
 _SHARE = 0.25  # of the rows that are read, from which on rows without joints are told

@@ -11,12 +11,12 @@ import yaml
 from sk120stiff import files, units
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.columns import QUATERNION
+from sk120stiff.measurements.files.writing import check_name, robot_seen_from
 from sk120stiff.measurements.importers.drafting import Draft, Written
-from sk120stiff.measurements.importers.frames import points_of, stood_of
 from sk120stiff.measurements.importers.told import Mode, Told
-from sk120stiff.measurements.registration import Registration
-from sk120stiff.measurements.writing import check_name, robot_seen_from
+from sk120stiff.measurements.importers.tracker.frames import points_of, stood_of
+from sk120stiff.measurements.placing.registration import Registration
+from sk120stiff.measurements.table.columns import QUATERNION
 from sk120stiff.robot import Robot
 from sk120stiff.robot.naming import RobotName, robot_name
 from sk120stiff.robot.rotations import rotation_vector

@@ -18,63 +18,67 @@ import numpy as np
 from sk120stiff.arrays import Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.importers.before_load import with_before
+from sk120stiff.measurements.files.reading import assembled
+from sk120stiff.measurements.importers.campaign.before_load import with_before
+from sk120stiff.measurements.importers.campaign.pairing import paired
+from sk120stiff.measurements.importers.campaign.several_files import joined
+from sk120stiff.measurements.importers.columns.load_states import WITH, WITHOUT
+from sk120stiff.measurements.importers.columns.orientations import named
+from sk120stiff.measurements.importers.columns.rows_in_words import understood_words
 from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Source
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
-from sk120stiff.measurements.importers.formats import FORMATS
-from sk120stiff.measurements.importers.frames import axes, placed
-from sk120stiff.measurements.importers.header_rows import in_one_row
-from sk120stiff.measurements.importers.holds import as_repeats
-from sk120stiff.measurements.importers.hung_masses import (
+from sk120stiff.measurements.importers.formats.catalogue import FORMATS
+from sk120stiff.measurements.importers.formats.matlab import is_matlab, matlab_grid
+from sk120stiff.measurements.importers.formats.numpy_archive import is_numpy, numpy_grid
+from sk120stiff.measurements.importers.formats.workbook import (
+    fitting_sheets,
+    is_workbook,
+    workbook_grid,
+)
+from sk120stiff.measurements.importers.formats.workbook_sheets import (
+    named_sheets,
+    under_load,
+    without_used,
+)
+from sk120stiff.measurements.importers.holds.holds import as_repeats
+from sk120stiff.measurements.importers.holds.log import standstills
+from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
+from sk120stiff.measurements.importers.layout.header_rows import in_one_row
+from sk120stiff.measurements.importers.layout.lost_readings import without_lost
+from sk120stiff.measurements.importers.layout.markers_in_rows import with_numbered_markers
+from sk120stiff.measurements.importers.loads.hung_masses import (
     doubts_of_names,
     refuse_other_files,
     say_masses,
     with_mass,
     with_masses_of_all,
 )
-from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
-from sk120stiff.measurements.importers.load_pairs import LOADS, unfolded
-from sk120stiff.measurements.importers.load_states import WITH, WITHOUT
-from sk120stiff.measurements.importers.log import standstills
-from sk120stiff.measurements.importers.lost_readings import without_lost
-from sk120stiff.measurements.importers.markers_in_rows import with_numbered_markers
-from sk120stiff.measurements.importers.matlab import is_matlab, matlab_grid
-from sk120stiff.measurements.importers.numpy_archive import is_numpy, numpy_grid
-from sk120stiff.measurements.importers.orientation import (
+from sk120stiff.measurements.importers.loads.pairs import LOADS, unfolded
+from sk120stiff.measurements.importers.loads.told_mass import with_told_mass
+from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
+from sk120stiff.measurements.importers.told import Mode, Told
+from sk120stiff.measurements.importers.tracker.frames import axes, placed
+from sk120stiff.measurements.importers.tracker.orientation import (
     Orientation,
     understood,
     with_orientation,
 )
-from sk120stiff.measurements.importers.orientation_columns import named
-from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
-from sk120stiff.measurements.importers.pairing import paired
-from sk120stiff.measurements.importers.positions_or_differences import (
+from sk120stiff.measurements.importers.tracker.positions_or_differences import (
     TakenAs,
     first_mode,
     last_mode,
     unless_apart,
 )
-from sk120stiff.measurements.importers.rows_in_words import understood_words
-from sk120stiff.measurements.importers.several_files import joined
-from sk120stiff.measurements.importers.several_markers import (
+from sk120stiff.measurements.importers.tracker.several_markers import (
     of_marker,
     refuse_one_marker_twice,
     refuse_several_points,
     with_places,
 )
-from sk120stiff.measurements.importers.stations import with_stations
-from sk120stiff.measurements.importers.told import Mode, Told
-from sk120stiff.measurements.importers.told_mass import with_told_mass
-from sk120stiff.measurements.importers.workbook import fitting_sheets, is_workbook, workbook_grid
-from sk120stiff.measurements.importers.workbook_sheets import (
-    named_sheets,
-    under_load,
-    without_used,
-)
-from sk120stiff.measurements.reading import assembled
-from sk120stiff.measurements.registration import Registration
-from sk120stiff.measurements.settings import settings_of
-from sk120stiff.measurements.table import table_of
+from sk120stiff.measurements.importers.tracker.stations import with_stations
+from sk120stiff.measurements.placing.registration import Registration
+from sk120stiff.measurements.table.settings import settings_of
+from sk120stiff.measurements.table.table import table_of
 from sk120stiff.robot import Robot
 
 

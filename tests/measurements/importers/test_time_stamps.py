@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from sk120stiff.measurements.importers.clock import is_clock
+from tests.measurements.importers.formats.test_formats import cells
 from tests.measurements.importers.reading import sheet_of
-from tests.measurements.importers.test_formats import cells
 
 HEAD = "// SpatialAnalyzer 2023.1  Points Export\n// Units: Millimeters\n"
 ROWS = """\

@@ -1,0 +1,1 @@
+"""Files become `Measurements`, and `Measurements` become files."""

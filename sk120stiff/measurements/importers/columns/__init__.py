@@ -1,0 +1,1 @@
+"""What columns of a table mean: words of their headers, and words in their cells."""

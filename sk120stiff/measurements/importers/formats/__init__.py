@@ -1,0 +1,1 @@
+"""One format a file, and the catalogue of them; containers of tables beside them."""

@@ -1,0 +1,1 @@
+"""What pressed on the robot: forces, hung masses, poses read without load and with it."""

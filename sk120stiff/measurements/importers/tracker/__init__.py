@@ -1,0 +1,1 @@
+"""What an instrument saw: where it stood, which marker, orientations, and what changed between."""
