@@ -12,7 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from tests.absolute.coverage import campaigns, told
+from tests.positions.coverage import campaigns, told
 
 
 def main() -> None:

@@ -18,9 +18,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import sk120stiff as sk
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.identify.absolute.calibrate import calibrate
-from tests.absolute.arm import errors
-from tests.absolute.shared import campaign
+from sk120stiff.identify.positions.calibrate import calibrate
+from tests.positions.arm import errors
+from tests.positions.shared import campaign
 
 KINDS = {
     "3 markers, with and without payload": ("ABC", (0.0, 40.0)),

@@ -17,7 +17,7 @@ OF_LOADS: tuple[Fault, ...] = (
         a_payload_that_turns_with_the_tool=("hanging = load_cases.hanging", "hanging = 0.0 * load_cases.hanging"),
     ),
     *of(
-        "model/sensitivities.py", *tests("absolute", "sensitivities"),
+        "model/sensitivities.py", *tests("positions", "sensitivities"),
         errors_of_a_sensor_along_the_unloaded_tool=("(loaded.rotation, load.of_follower)", "(load_cases.rotation, load.of_follower)"),
     ),
     *of(

@@ -6,63 +6,63 @@ from __future__ import annotations
 
 from scripts.mutations_fault import Fault, of, tests
 
-POSITIONS = tests("absolute", "linear", "choose", "names")
+POSITIONS = tests("positions/explain", "linear", "choose", "names")
 
 OF_POSITIONS: tuple[Fault, ...] = (
     *of(
-        "identify/absolute/force_axes.py", *tests("absolute", "force_axes"),
+        "identify/positions/checks/force_axes.py", *tests("positions/checks", "force_axes"),
         forces_never_negated=("for sign in (1.0, -1.0)", "for sign in (1.0,)"),
         forces_that_turn_the_other_way=('("z", angle, degrees=True).as_matrix()', '("z", -angle, degrees=True).as_matrix()'),
         other_axes_as_good_as_any=("AS_GOOD * least", "np.inf * least"),
     ),
     *of(
-        "identify/absolute/force_axes.py", *tests("absolute", "gauges"),
+        "identify/positions/checks/force_axes.py", *tests("positions", "gauges"),
         columns_exchanged_the_other_way=("sensor @ columns @ sensor.T", "sensor @ columns.T @ sensor.T"),
     ),
     *of(
-        "identify/absolute/model_form.py", *tests("absolute", "gauges"),
+        "identify/positions/noise/model_form.py", *tests("positions", "gauges"),
         a_smooth_error_of_what_does_not_yield=("    if not products:", "    if False:"),
     ),
     *of(
-        "measurements/placing/levels.py", *tests("absolute", "levels"),
+        "measurements/placing/levels.py", *tests("positions/checks", "levels"),
         gravity_the_other_way=("np.linalg.lstsq(A, -levels.sine", "np.linalg.lstsq(A, levels.sine"),
         one_wild_level_is_a_slip=("int((1.0 - WILD) * len(values))", "len(values)"),
         levels_exchanged_the_other_way=("LEVELS[order.index(k)]", "LEVELS[order[k]]"),
     ),
     *of(
-        "identify/absolute/not_named.py", *tests("absolute", "not_named"),
+        "identify/positions/uncertainty/undetected.py", *tests("positions/uncertainty", "undetected"),
         springs_without_a_name_are_rigid=("more = len(problem.free) - len(found.x)\n", "return found\n"),
     ),
     *of(
-        "explain/absolute/balancer.py", *tests("absolute", "balancer"),
+        "explain/positions/answer/balancer.py", *tests("positions/explain", "balancer"),
         any_wave_is_a_balancer=("chance_of_gear(*_wave(effect, final)) >= SURE", "chance_of_gear(*_wave(effect, final)) >= 2.0"),
         a_balancer_that_needs_no_telling=("item.gain, (name,))", "item.gain)"),
         balancers_as_usual_as_gears=("BALANCED = USUAL", "BALANCED = 1.0 - USUAL"),
     ),
     *of(
-        "explain/absolute/choose.py", *POSITIONS,
+        "explain/positions/select/choose.py", *POSITIONS,
         confirmed_by_its_share_alone=("gained.share > SHARE and gained.errors > sure and", "gained.share > SHARE and"),
         looking_at_many_for_nothing=("CLEAR + float(np.log(max(len(linear.candidates), 1)))", "CLEAR"),
         gain_at_poses_that_were_fitted=("linear.gap(each, linear.noise(each), held_out=True)", "linear.gap(each, linear.noise(each), held_out=False)"),
     ),
     *of(
-        "explain/absolute/choose.py", *tests("absolute", "choose"),
+        "explain/positions/select/choose.py", *tests("positions/explain", "choose"),
         less_likely_names_kept=("odds[best] > odds[e] + MENTION", "odds[best] > odds[e] + 1e9"),
         ties_exchanged=("odds[best] > odds[e] + MENTION", "odds[best] > odds[e] - 1e-9"),
     ),
     *of(
-        "explain/absolute/standing.py", *POSITIONS,
+        "explain/positions/judge/posterior.py", *POSITIONS,
         rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
     ),
     *of(
-        "explain/absolute/linear.py", *POSITIONS,
+        "explain/positions/select/linear.py", *POSITIONS,
         evidence_without_its_volume=("return -0.5 * (found.square + found.volume)", "return -0.5 * found.square"),
         poses_left_out_in_the_fit=("G = self.whole if without is None else self.whole - self.sums[without]", "G = self.whole"),
         parts_softer_than_rigid=("wrong = (pick >= P) & (x < 0.0)", "wrong = (pick >= P) & (x < -1e99)"),
         noise_smaller_than_stated=("return max(left, together) if self.stated else left", "return left"),
     ),
     *of(
-        "identify/absolute/left_out.py", *tests("absolute", "own_weight"),
+        "identify/positions/omitted/nuisances.py", *tests("positions/uncertainty", "own_weight"),
         springs_blind_to_the_arms_weight=("more = np.column_stack([more, problem", "more = 0.0 * np.column_stack([more, problem"),
     ),
     *of(
@@ -74,34 +74,34 @@ OF_POSITIONS: tuple[Fault, ...] = (
         rounding_taken_for_a_column=("lengths > ROUNDING * lengths", "lengths > 0.0 * lengths"),
     ),
     *of(
-        "identify/absolute/gauss_newton.py", *POSITIONS,
+        "identify/positions/solve/gauss_newton.py", *POSITIONS,
         prior_centred_elsewhere=("(centre - x) / span])", "(x - centre) / span])"),
     ),
     *of(
-        "model/sensitivities.py", *tests("absolute", "moved"),
+        "model/sensitivities.py", *tests("positions", "moved"),
         turns_against_nothing=("on[:, 3:, 3:] = turn", "on[:, 3:, 3:] = 0.0"),
         turns_since_zero_unturned=("adjoint_0 = on @ adjoint_0", "adjoint_0 = adjoint_0 + 0.0"),
         turns_in_axes_of_the_base=("parts.append(axes @ moved[:, 3:])", "parts.append(moved[:, 3:])"),
     ),
     *of(
-        "model/standing.py", *tests("absolute", "moved"),
+        "model/standing.py", *tests("positions", "moved"),
         turns_the_other_way=("self.rest.screws.rotation @ np.swapaxes(before, -1, -2)", "before @ np.swapaxes(self.rest.screws.rotation, -1, -2)"),
     ),
     *of(
-        "model/assembly.py", *tests("absolute", "moved"),
+        "model/assembly.py", *tests("positions", "moved"),
         a_marker_moved_since_zero=("points = self._marker(load_cases, values)", "points = load_cases.point"),
     ),
     *of(
-        "measurements/channels.py", *tests("absolute", "moved"),
+        "measurements/channels.py", *tests("positions", "moved"),
         axes_not_read_are_zero=("np.where(np.isnan(self.turn), said, self.turn)", "np.nan_to_num(self.turn)"),
         uncertainty_of_no_displacement=('_OF_ROWS = ("position", "displacement")', '_OF_ROWS = ("position",)'),
     ),
     *of(
-        "measurements/absolute.py", *tests("absolute", "moved"),
+        "measurements/absolute.py", *tests("positions", "moved"),
         zero_readings_without_error=("since_zero = np.sqrt(2.0) if twice else 1.0", "since_zero = 1.0"),
     ),
     *of(
-        "data_checks/turns.py", *tests("absolute", "moved"),
+        "data_checks/turns.py", *tests("positions", "moved"),
         any_change_is_a_slip=("after >= SOUND and 1.0 - now > CLEARER * (1.0 - after)", "after >= SOUND"),
         turns_of_any_arm=("    if now >= NONE:", "    if now >= 0.0:"),
     ),
@@ -116,20 +116,20 @@ OF_POSITIONS: tuple[Fault, ...] = (
         readings_where_none_were=("if said.channels.present:", "if not said.channels.present:"),
     ),
     *of(
-        "explain/absolute/budget.py", *tests("absolute", "budget"), *tests("absolute", "moved"),
+        "explain/positions/judge/budget.py", *tests("positions/explain", "budget"), *tests("positions", "moved"),
         the_tracker_moves_the_arm=("isinstance(effect, Viewpoint | Mounting) or marks", "isinstance(effect, Mounting) or marks"),
         a_load_moves_by_weight_too=("if problem.channels.displacements_alone:", "if not problem.channels.displacements_alone:"),
     ),
     *of(
-        "identify/absolute/pose_problem.py", *tests("absolute", "uneven_moved"),
+        "identify/positions/solve/pose_problem.py", *tests("positions", "uneven_moved"),
         poses_that_yield_alike=("        if self.channels.displacements_alone:\n            return self._by_springs\n", ""),
     ),
     *of(
-        "identify/absolute/gauss_newton.py", *tests("absolute", "uneven_moved"),
+        "identify/positions/solve/gauss_newton.py", *tests("positions", "uneven_moved"),
         any_fall_will_do=("- WORTH * share * promised", "- 0.0 * promised"),
     ),
     *of(
-        "explain/absolute/candidates.py", *tests("absolute", "moved"),
+        "explain/positions/select/candidates.py", *tests("positions", "moved"),
         loads_misread_by_sensors_alone=("    return max(laws, key=takes_off)", "    return laws[0]"),
     ),
     *of(
@@ -143,43 +143,43 @@ OF_POSITIONS: tuple[Fault, ...] = (
         covariance_of_a_frame_without_its_scale=("(vt.T / values)[:frames] / size[:frames, None]", "(vt.T / values)[:frames]"),
     ),
     *of(
-        "measurements/placing/slips.py", *tests("absolute", "rows_apart"),
+        "measurements/placing/slips.py", *tests("positions/checks", "rows_apart"),
         a_tracker_moved_never=("(np.arange(len(cloud.x)) >= row)", "(np.arange(len(cloud.x)) >= 10**9)"),
         rows_moved_the_other_way=("of = rows + by * (rows >= row)", "of = rows - by * (rows >= row)"),
         a_row_found_roughly=("best, step = min(near, key=left), step // 2", "step = 0"),
     ),
     *of(
-        "effects/tracker_frame.py", *tests("absolute", "stations", "sensitivities"),
+        "effects/tracker_frame.py", *tests("positions", "stations", "sensitivities"),
         all_seen_from_the_first_station=("return rotation_of(frames[:, 3:])[stood], frames[stood, :3]", "return rotation_of(frames[:, 3:])[0 * stood], frames[0 * stood, :3]"),
         a_station_that_moves_the_others=("J, own = left_jacobian(frame[3:]), stood == k", "J, own = left_jacobian(frame[3:]), stood >= 0"),
         unknown_stations_taken_for_the_first=("if label not in self.stations]", "if False]"),
     ),
     *of(
-        "identify/absolute/placed_anew.py", *tests("absolute", "stations"),
+        "identify/positions/checks/reregistration.py", *tests("positions", "stations"),
         an_arm_that_changed_placed_away=("goal = np.inf if strange else BETTER * before", "goal = np.inf"),
         a_marker_moved_for_nothing=("            goal = BETTER * after", "            goal = np.inf"),
         wild_rows_pull_the_tracker=("near = far <= max(FAR * float(np.median(far)), 1e-9)", "near = far <= 1e9"),
     ),
     *of(
-        "identify/absolute/pushed.py", *tests("absolute", "joint_slips"),
+        "identify/positions/checks/slips.py", *tests("positions/checks", "joint_slips"),
         a_slip_where_a_label_says_there_is_none=("or problem.said.series is None)", "or True)"),
         a_law_of_the_joint_taken_for_a_slip=("<= CLEARER * steps.by_places", "<= 0.0"),
     ),
     *of(
-        "identify/absolute/steps.py", *tests("absolute", "joint_slips"),
+        "identify/positions/checks/change_points.py", *tests("positions/checks", "joint_slips"),
         stairs_of_a_drift_taken_for_slips=("courses if len(cuts) > 1 else", "courses if len(cuts) > 9 else"),
         the_joint_that_takes_off_least=("int(np.argmax([replace", "int(np.argmin([replace"),
         sizes_of_what_does_not_slip=("[-len(cuts) * self.frame.shape[1] :]", "[: len(cuts) * self.frame.shape[1]]"),
     ),
     *of(
-        "identify/absolute/steps.py", *tests("absolute", "pushed"),
+        "identify/positions/checks/change_points.py", *tests("positions/checks", "slips"),
         creeping_taken_for_a_push=("if after <= HALF * min(before, steady):", "if after <= HALF * before:"),
         a_push_for_a_little=("HALF = 0.5", "HALF = 0.99"),
         borders_in_the_joints_taken_for_a_push=("> CLEARER * self.by_places", "> 0.0"),
         a_place_from_the_first_row_on=("self.frame * (self.when >= cut)[:, None] for cut in cuts", "self.frame * (self.when >= 0)[:, None] for cut in cuts"),
     ),
     *of(
-        "identify/absolute/pushed.py", *tests("absolute", "pushed"),
+        "identify/positions/checks/slips.py", *tests("positions/checks", "slips"),
         a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
         pushes_in_the_order_of_the_file=("rows = np.arange(readings.n_readings) if clock is None else clock", "rows = np.arange(readings.n_readings)"),
     ),
@@ -221,23 +221,23 @@ OF_POSITIONS: tuple[Fault, ...] = (
         zeros_taken_for_positions=("if zero and zeros.sum() >= AGAIN:", "if False:"),
     ),
     *of(
-        "identify/absolute/waves.py", *tests("absolute", "lacking"),
+        "identify/positions/omitted/waves.py", *tests("positions/uncertainty", "omitted_bias"),
         another_cause_taken_for_waves=("if loss[k] > most and", "if"),
     ),
     *of(
-        "identify/absolute/hanging.py", *tests("absolute", "lacking"),
+        "identify/positions/checks/gravity_direction.py", *tests("positions/uncertainty", "omitted_bias"),
         a_base_that_yields_taken_for_a_slope=("if lead > 0.0:", "if lead > 1e9:"),
     ),
     *of(
-        "identify/absolute/noise_sizes.py", *tests("absolute", "lacking"),
+        "identify/positions/noise/sizes.py", *tests("positions/uncertainty", "omitted_bias"),
         a_tail_taken_for_slips=("FAR * max(size, float(np.quantile(ends[~far & (count > 0)], TAIL)))", "FAR * size"),
     ),
     *of(
-        "identify/absolute/beside_frames.py", *tests("absolute", "hanging"),
+        "identify/positions/checks/beside_frames.py", *tests("positions/checks", "gravity_direction"),
         waves_taken_for_sag=("for kinds in ((JointFrame, TransmissionError), (JointSprings,))", "for kinds in ((JointFrame,), (JointSprings,))"),
     ),
     *of(
-        "identify/absolute/hanging.py", *tests("absolute", "hanging"),
+        "identify/positions/checks/gravity_direction.py", *tests("positions/checks", "gravity_direction"),
         a_balancer_taken_for_a_ceiling=("if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):", "if odds < BEYOND_DOUBT:"),
         springs_that_push=("return float(nnls(self._along(way), self.gap)[1] ** 2)", "return self.signed(way)"),
         gravity_along_one_axis_alone=("[under(way) for way in (*np.eye(3), np.zeros(3))]", "[under(way) for way in (*np.eye(3)[[2, 2, 2]], np.zeros(3))]"),
@@ -255,28 +255,28 @@ OF_POSITIONS: tuple[Fault, ...] = (
         foretold_with_what_was_known_alone=("total = design.known + design.gains[list(design.rows)].sum(axis=0)", "total = design.known"),
     ),
     *of(
-        "explain/absolute/other_poses.py", *tests("absolute", "advice"),
+        "explain/positions/advise/other_poses.py", *tests("positions/explain", "advice"),
         poses_that_tell_nothing_proposed=("if found.after >= TOLD:", "if found.after >= 0.0:"),
     ),
     *of(
-        "identify/absolute/other_causes.py", *tests("absolute", "payload_place"),
+        "identify/positions/omitted/other_causes.py", *tests("positions", "payload_place"),
         payloads_that_hang_where_the_file_says=("(kind.of_payload and hung)", "(kind.of_payload and loaded)"),
         one_mass_that_hangs_elsewhere_twice=("hung = said is not None and said.payload_differs", "hung = said is not None"),
     ),
     *of(
-        "effects/force_sensor.py", *tests("absolute", "payload_place"),
+        "effects/force_sensor.py", *tests("positions", "payload_place"),
         a_mass_as_well_placed_as_a_hook=("plausible, typical = (0.5, 0.02) if self.hung", "plausible, typical = (0.1, 5e-3) if self.hung"),
     ),
     *of(
-        "explain/absolute/explained.py", *tests("absolute", "advice"),
+        "explain/positions/answer/explained.py", *tests("positions/explain", "advice"),
         one_of_a_class_left_open=("return not self.others and not self.untold", "return not self.alternatives and not self.untold"),
     ),
     *of(
-        "identify/absolute/creeping.py", *tests("absolute", "creeping"),
+        "identify/positions/checks/drift.py", *tests("positions/checks", "drift"),
         a_creep_where_the_order_is_stated=("if readings.order is not None or readings.time is not None:", "if readings.time is not None:"),
     ),
     *of(
-        "measurements/placing/slips.py", *tests("absolute", "zeros"),
+        "measurements/placing/slips.py", *tests("positions", "zeros"),
         a_zero_of_the_first_joint_alone=("best, joint, zero = tried[near], k, float(ZEROS[near])", "best, joint, zero = tried[near], 0, float(ZEROS[near])"),
         a_zero_the_other_way=("return Convention(rms, np.eye(n), zero * np.eye(n)[joint])", "return Convention(rms, np.eye(n), -zero * np.eye(n)[joint])"),
     ),
@@ -286,20 +286,20 @@ OF_POSITIONS: tuple[Fault, ...] = (
         loads_left_as_they_are=("        if what != \"d\":", "        if False:"),
     ),
     *of(
-        "identify/absolute/not_named.py", *tests("absolute", "not_named"),
+        "identify/positions/uncertainty/undetected.py", *tests("positions/uncertainty", "undetected"),
         what_stands_fixed_set_to_zero=("- set(found.model.names)", "- {each.name for each in found.parameters}"),
     ),
     *of(
-        "explain/absolute/changed.py", *tests("absolute", "changed"),
+        "explain/positions/judge/changed.py", *tests("positions/explain", "changed"),
         a_change_of_nothing=("shares[best] < WORTH", "shares[best] < 1.0"),
         a_change_in_any_order=("/ (1 + DRAWN) > CHANCE", "/ (1 + DRAWN) > 1.0"),
     ),
     *of(
-        "identify/absolute/words.py", *tests("absolute", "payload_place"),
+        "identify/positions/words.py", *tests("positions", "payload_place"),
         weight_that_is_sure=("if said.payload[readings.use].any():", "if True:"),
     ),
     *of(
-        "identify/absolute/remainder.py", *tests("absolute", "remainder"),
+        "identify/positions/residuals/remainder.py", *tests("positions/noise", "remainder"),
         a_gap_that_is_all_noise=("return 0.0, float(np.sqrt(square / freedom)), 1.0", "return 0.0, 0.0, 1.0"),
         repeats_that_tell_no_noise=("square - again.freedom * pure", "square"),
     ),
@@ -309,21 +309,21 @@ OF_POSITIONS: tuple[Fault, ...] = (
         any_word_a_mass=("elif len(heavy) == 1:", "elif False:"),
     ),
     *of(
-        "effects/load_cases.py", *tests("absolute", "references"),
+        "effects/load_cases.py", *tests("positions", "references"),
         warmth_over_that_of_each_file=("values + (reference.until(own) or 0.0)", "values + 0.0 * (reference.until(own) or 0.0)"),
     ),
     *of(
-        "effects/reference.py", *tests("absolute", "references"),
+        "effects/reference.py", *tests("positions", "references"),
         every_clock_is_the_same=("if other.last < self.value - lasted or other.value > self.last + lasted:", "if False and lasted:"),
         a_clock_that_ends_with_the_fit=("other.value > self.last + lasted", "other.value > self.last"),
         a_clock_that_begins_with_the_fit=("other.last < self.value - lasted", "other.last < self.value"),
     ),
     *of(
-        "effects/counting.py", *tests("absolute", "references"),
+        "effects/counting.py", *tests("positions", "references"),
         a_reference_of_every_fit=("self.reference.beside(own) if self.reference else own", "own"),
     ),
     *of(
-        "effects/reading_drift.py", *tests("absolute", "references"),
+        "effects/reading_drift.py", *tests("positions", "references"),
         what_has_warmed_up_before_the_first=("np.maximum(elapsed, 0.0) if load_cases.absolute else elapsed", "elapsed"),
     ),
 )  # fmt: skip

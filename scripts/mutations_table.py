@@ -352,11 +352,11 @@ FAULTS: tuple[Fault, ...] = (
         calibration_of_what_has_none=("p.spec.usual if p.effect.calibrated else np.inf", "p.spec.usual"),
     ),
     *of(
-        "model/assembly.py", *tests("absolute", "link_masses"), *tests("absolute", "sensitivities"),
+        "model/assembly.py", *tests("positions", "link_masses"), *tests("positions", "sensitivities"),
         masses_that_weigh_as_stated=("return 1.0 + float(values[self.weighing].sum())", "return 1.0"),
     ),
     *of(
-        "model/sensitivities.py", *tests("absolute", "link_masses"), *tests("absolute", "sensitivities"),
+        "model/sensitivities.py", *tests("positions", "link_masses"), *tests("positions", "sensitivities"),
         masses_that_show_twice=("adjoint @ (rest.weight.compliance @ stated", "2.0 * adjoint @ (rest.weight.compliance @ stated"),
         masses_that_hang_on_a_gears_curve=("adjoint @ (rest.weight.compliance @ stated", "adjoint @ (rest.compliance @ stated"),
     ),

@@ -1,1 +1,1 @@
-"""One file per command: parse, call one library function, print."""
+"""The command line: a command parses, calls one library function, and prints."""

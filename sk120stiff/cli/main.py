@@ -20,8 +20,9 @@ _ASKED_FOR_JSON = ContextVar("asked for JSON", default=False)
 # typer shows the base class of its usage errors under no public name.
 _UsageError = cast(type[Exception], typer.BadParameter.__mro__[1])
 
-# Command → what it answers. `sk120stiff/cli/NAME.py` holds its function `command`, whose docstring
-# opens with the same line; the file is imported when the command is called, not before.
+# Command → what it answers. `commands/NAME.py`, or the folder of that name, holds its function
+# `command`, whose docstring opens with the same line; it is imported when the command is called,
+# not before.
 COMMANDS = {
     "check": "Does a robot load, what moves, what is suspicious.",
     "new": "A folder to start from: robot, model, empty measurements.",
@@ -59,7 +60,7 @@ def _load(name: str) -> Any:
     from sk120stiff.cli.frame import framed, guarded
 
     with guarded(debug="--debug" in sys.argv, as_json=_ASKED_FOR_JSON.get()):
-        body = import_module(f"{__package__}.{name}").command
+        body = import_module(f"{__package__}.commands.{name}").command
     return get_command(_application(name, framed(body)))
 
 

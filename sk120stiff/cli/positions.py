@@ -13,12 +13,12 @@ from sk120stiff.cli.tables import table
 from sk120stiff.cli.values import value_lines
 from sk120stiff.effects import LinearElastic
 from sk120stiff.explain import Explained
-from sk120stiff.explain.absolute.accounts import HeldOutFile
-from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.findings import likely, sentence_in
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.absolute.words import findings, unseen
+from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
+from sk120stiff.explain.positions.judge.accounts import HeldOutFile
+from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
+from sk120stiff.identify.positions.words import findings, unseen
 from sk120stiff.model import Model, base_model
 
 FEW = 4  # parameters of one effect that are printed; those of a joint's frame stand in the report

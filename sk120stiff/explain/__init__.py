@@ -1,6 +1,5 @@
 """Find where model and readings disagree, name what is missing, add it, show the gap shrink."""
 
-from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.answer.document import verdict_document
 from sk120stiff.explain.answer.explanation import Explanation
 from sk120stiff.explain.findings import Detectable, Finding
@@ -8,6 +7,7 @@ from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options
+from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.run import explain
 from sk120stiff.identify import DOUBTFUL
 

@@ -12,8 +12,6 @@ from sk120stiff.arrays import on_one_thread
 from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
 from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
-from sk120stiff.explain.absolute.explained import Explained
-from sk120stiff.explain.absolute.run import explain_positions
 from sk120stiff.explain.advise.best_guess import contenders
 from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
@@ -34,6 +32,8 @@ from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file, ga
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
+from sk120stiff.explain.positions.answer.explained import Explained
+from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.explain.select.best_selection import (
     Try,
     best_selection,

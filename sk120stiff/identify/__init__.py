@@ -1,6 +1,5 @@
 """Measurements + model become a `Fit`: least squares, uncertainty, what cannot be known."""
 
-from sk120stiff.identify.absolute.calibrate import Calibration
 from sk120stiff.identify.checks.comparison import Compared, compare
 from sk120stiff.identify.checks.held_out import (
     HeldOut,
@@ -17,6 +16,7 @@ from sk120stiff.identify.checks.unseen import unseen_reasons, unseen_sentences, 
 from sk120stiff.identify.checks.yardstick import Yardstick, contradiction, yardstick
 from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.report import fit_report
 from sk120stiff.identify.run import fit, known_model, refuse_for_positions, refuse_plan
 from sk120stiff.identify.solve.problem import Problem

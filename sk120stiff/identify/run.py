@@ -8,20 +8,20 @@ from dataclasses import replace
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.effects import CATALOGUE
 from sk120stiff.errors import InputError, listed
-from sk120stiff.identify.absolute.asked_for import Blocks
-from sk120stiff.identify.absolute.beside_frames import without_springs
-from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, with_model_form
-from sk120stiff.identify.absolute.creeping import creeping
-from sk120stiff.identify.absolute.force_axes import refuse_other_forces
-from sk120stiff.identify.absolute.hanging import refuse_another_gravity
-from sk120stiff.identify.absolute.lacking import beside_lacking
-from sk120stiff.identify.absolute.pushed import refuse_pushed
-from sk120stiff.identify.absolute.remounted import refuse_remounted
-from sk120stiff.identify.absolute.weighing import pounds
-from sk120stiff.identify.absolute.words import known_calibration
-from sk120stiff.identify.absolute.yielding_parts import beside_parts
 from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.positions.calibrate import Calibration, calibrate, with_model_form
+from sk120stiff.identify.positions.checks.beside_frames import without_springs
+from sk120stiff.identify.positions.checks.drift import creeping
+from sk120stiff.identify.positions.checks.force_axes import refuse_other_forces
+from sk120stiff.identify.positions.checks.gravity_direction import refuse_another_gravity
+from sk120stiff.identify.positions.checks.payload_unit import pounds
+from sk120stiff.identify.positions.checks.remounted import refuse_remounted
+from sk120stiff.identify.positions.checks.slips import refuse_pushed
+from sk120stiff.identify.positions.omitted.selection import Blocks
+from sk120stiff.identify.positions.uncertainty.compliant_parts import beside_parts
+from sk120stiff.identify.positions.uncertainty.omitted_bias import beside_lacking
+from sk120stiff.identify.positions.words import known_calibration
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.uncertainty.known_model import known_of_displacements
 from sk120stiff.identify.uncertainty.left_over import LeftOver

@@ -17,7 +17,7 @@ from sk120stiff.arrays import Array, Index, on_one_thread
 from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify import why_unseen
-from sk120stiff.identify.absolute.pose_problem import absolute_of
+from sk120stiff.identify.positions.solve.pose_problem import absolute_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.plan.cell import Cell

@@ -1,6 +1,7 @@
 """What links, bearings and floors that may yield will make of springs, where positions are planned.
 
-A fit of the readings will count them (`identify.absolute.yielding_parts`): so a plan does.
+A fit of the readings will count them (`identify.positions.uncertainty.compliant_parts`): so a plan
+does.
 """
 
 from __future__ import annotations
@@ -12,15 +13,15 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE
-from sk120stiff.identify.absolute.other_causes import beside, causes_at, slopes
-from sk120stiff.identify.absolute.pose_problem import PoseProblem
-from sk120stiff.identify.absolute.yielding_parts import (
+from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.identify.positions.omitted.other_causes import beside, causes_at, slopes
+from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
+from sk120stiff.identify.positions.uncertainty.compliant_parts import (
     ROUNDING,
     expected_weights,
     taken,
     yields,
 )
-from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.plan.positions_pool import PositionsPool
 
 

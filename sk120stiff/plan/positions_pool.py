@@ -2,7 +2,7 @@
 
 What is told of a model by them is told as a fit does: small errors of every joint's frame beside
 what the model holds, the instrument's frame and the markers' places unknown, and what no candidates
-tell apart counted in other parameters (`identify.absolute.gauge`).
+tell apart counted in other parameters (`identify.positions.solve.minimal_parameters`).
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from sk120stiff.effects import Effect, Mounting, Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.marker_shift import MarkerShift
 from sk120stiff.errors import InputError
-from sk120stiff.identify.absolute.calibrate import Calibration, calibrate, rigid_columns
-from sk120stiff.identify.absolute.gauge import least_set
-from sk120stiff.identify.absolute.noise_sizes import START
-from sk120stiff.identify.absolute.own_weight import heaviest_payload, own_weight
-from sk120stiff.identify.absolute.pose_problem import PoseProblem, absolute_of
-from sk120stiff.identify.absolute.start import loaded, started
+from sk120stiff.identify.positions.calibrate import Calibration, calibrate, rigid_columns
+from sk120stiff.identify.positions.noise.sizes import START
+from sk120stiff.identify.positions.omitted.own_weight import heaviest_payload, own_weight
+from sk120stiff.identify.positions.solve.minimal_parameters import least_set
+from sk120stiff.identify.positions.solve.pose_problem import PoseProblem, absolute_of
+from sk120stiff.identify.positions.solve.start import loaded, started
 from sk120stiff.measurements import Channels, Measurements, NoiseModel
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import ANGLES

@@ -13,7 +13,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import load_cases_of
-from sk120stiff.identify.absolute.pose_problem import absolute_of
+from sk120stiff.identify.positions.solve.pose_problem import absolute_of
 from sk120stiff.measurements import Channels, Measurements
 from sk120stiff.measurements.channels import ANGLES, BY_LOAD, KINDS, Kind, inclined
 from sk120stiff.model import Model

@@ -25,9 +25,9 @@ def teach(monkeypatch: pytest.MonkeyPatch) -> Teach:
     """Make a function the program's command `probe`."""
 
     def install(body: Callable[..., Answer]) -> None:
-        module = types.ModuleType("sk120stiff.cli.probe")
+        module = types.ModuleType("sk120stiff.cli.commands.probe")
         module.command = body  # type: ignore[attr-defined]
-        monkeypatch.setitem(sys.modules, "sk120stiff.cli.probe", module)
+        monkeypatch.setitem(sys.modules, "sk120stiff.cli.commands.probe", module)
         monkeypatch.setitem(entry.COMMANDS, "probe", "A command made for the test.")
 
     return install
@@ -179,7 +179,7 @@ def test_nobody_reads_on(tmp_path: Path) -> None:
         "import sys, types\n"
         "from sk120stiff.cli import main as entry\n"
         "from sk120stiff.cli.frame import Answer\n"
-        "module = types.ModuleType('sk120stiff.cli.probe')\n"
+        "module = types.ModuleType('sk120stiff.cli.commands.probe')\n"
         "module.command = lambda: Answer({'x': list(range(1_000_000))})\n"
         "sys.modules[module.__name__] = module\n"
         "entry.COMMANDS['probe'] = 'Flood.'\n"
@@ -210,7 +210,7 @@ def test_ctrl_c_leaves_the_old_file(tmp_path: Path) -> None:
         "        time.sleep(60)\n"
         "    os.replace = slow\n"
         f"    files.write_atomically({str(target)!r}, 'new')\n"
-        "module = types.ModuleType('sk120stiff.cli.probe')\n"
+        "module = types.ModuleType('sk120stiff.cli.commands.probe')\n"
         "module.command = command\n"
         "sys.modules[module.__name__] = module\n"
         "entry.COMMANDS['probe'] = 'Slow.'\n"

@@ -14,9 +14,9 @@ import sk120stiff as sk
 from sk120stiff.cli.positions import yielding
 from sk120stiff.model import Model
 from sk120stiff.show.scene.building import scene_of_model
-from tests.absolute.arm import Arm, errors, poses, tracked, write
-from tests.absolute.missing_cause import YIELDS, campaign
-from tests.absolute.test_held_out import HELD, WILD, read
+from tests.positions.arm import Arm, errors, poses, tracked, write
+from tests.positions.missing_cause import YIELDS, campaign
+from tests.positions.test_held_out import HELD, WILD, read
 
 FIT = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"
 NOISE = "noise: {sigma: 20, unit: um}\n"

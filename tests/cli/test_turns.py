@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from tests.absolute.loaded_arm import write_moved
-from tests.absolute.test_moved import POINT, STATED, pulls, six_columns
 from tests.cli.conftest import Run
+from tests.positions.loaded_arm import write_moved
+from tests.positions.test_moved import POINT, STATED, pulls, six_columns
 
 STATED_TWICE = POINT + STATED + ", rotation: 20, rotation_unit: urad}\n"
 

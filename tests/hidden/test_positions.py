@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.absolute.arm import NAMES, Arm, poses, urdf
 from tests.hidden import make_cases, run, score
 from tests.hidden.answers import Answer
 from tests.hidden.generator.arm import Typical
@@ -19,6 +18,7 @@ from tests.hidden.generator.positions import Truth, Visits
 from tests.hidden.generator.rotations import Array
 from tests.hidden.generator.urdf_arm import urdf_arm
 from tests.hidden.judge import mark
+from tests.positions.arm import NAMES, Arm, poses, urdf
 
 SIX = urdf_arm(
     urdf(), name="six", reference="six.urdf", base="base", tool="tool",

@@ -16,11 +16,11 @@ from sk120stiff.model import joint_spring_model
 from sk120stiff.model.pose_reading import read_poses
 from sk120stiff.robot import load_robot
 from sk120stiff.stiffness import equilibrium, linear_springs
-from tests.absolute.arm import Arm, Array, poses, write
-from tests.absolute.loaded_arm import rests, write_moved
 from tests.oracles.mujoco_serial import serial_statics, springs_of
 from tests.oracles.numpy_kinematics import UrdfTree, transform
 from tests.oracles.sample_urdfs import six_axis_arm
+from tests.positions.arm import Arm, Array, poses, write
+from tests.positions.loaded_arm import rests, write_moved
 
 SOFT = np.array([1.2e4, 1.0e4, 1.1e4, 9e3, 8e3, 6e3])  # N·m/rad, of a cobot
 POINT = np.array([0.05, -0.02, 0.1])

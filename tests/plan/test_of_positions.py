@@ -10,9 +10,9 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError, Refusal
-from sk120stiff.identify.absolute.calibrate import calibrate
+from sk120stiff.identify.positions.calibrate import calibrate
 from sk120stiff.plan import Cell, Places, PlanOfPositions
-from tests.absolute.arm import Arm, bound, errors, tracked, urdf
+from tests.positions.arm import Arm, bound, errors, tracked, urdf
 
 SIGMA, FEW = 2e-5, 60  # m; poses to choose from
 AT = np.array([0.05, -0.08, 0.12])  # of the marker

@@ -10,11 +10,11 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
-from sk120stiff.identify.absolute.calibrate import Calibration
+from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.measurements import Measurements
-from tests.absolute.arm import Arm, poses, write
-from tests.absolute.loaded_arm import SPRINGS, moved, write_moved
 from tests.measurements.files.test_write_positions import KINDS, written
+from tests.positions.arm import Arm, poses, write
+from tests.positions.loaded_arm import SPRINGS, moved, write_moved
 
 LENGTH, ANGLE = 1e-5, 3e-5
 POINT = "point: {xyz: [150, 0, 100], unit: mm}\n"
@@ -68,7 +68,7 @@ def _sigma(readings: Measurements) -> np.ndarray:
 
 
 def _problem(model: sk.Model, readings: Measurements):  # type: ignore[no-untyped-def]
-    from sk120stiff.identify.absolute.pose_problem import PoseProblem
+    from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 
     noise = sk.NoiseModel(LENGTH, zero="separate")
     return PoseProblem(model, readings, noise, sigma=dict.fromkeys(("rotation",), ANGLE))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.explain.absolute.run import explain_positions
+from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.model import Model
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data" / "ur5_tracker"

@@ -15,8 +15,8 @@ from sk120stiff.show.scene.building import scene_of_model
 from sk120stiff.show.scene.frame import Request, compute_frame
 from sk120stiff.show.scene.payload import scene_payload
 from sk120stiff.show.stories import plan_scene
-from tests.absolute.arm import NAMES, Arm, poses, urdf, write
-from tests.absolute.loaded_arm import SPRINGS
+from tests.positions.arm import NAMES, Arm, poses, urdf, write
+from tests.positions.loaded_arm import SPRINGS
 from tests.show.browser import Page, clean
 
 pytestmark = pytest.mark.timeout(180)

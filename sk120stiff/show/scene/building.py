@@ -190,7 +190,7 @@ def _off_the_last(
 
     Nothing where a model does not know where the instrument stands, or no position was read.
     """
-    from sk120stiff.identify.absolute.placed_anew import placed_anew
+    from sk120stiff.identify.positions.checks.reregistration import placed_anew
     from sk120stiff.model import instrument_frames, predict
 
     position = None if used.absolute is None else used.absolute.channels.position

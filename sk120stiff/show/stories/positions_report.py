@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sk120stiff.explain.absolute.explained import Explained
-from sk120stiff.explain.absolute.next_step import headline, next_step_of_positions
 from sk120stiff.explain.findings import sentence_in
-from sk120stiff.identify.absolute.words import findings, unseen
+from sk120stiff.explain.positions.answer.explained import Explained
+from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
+from sk120stiff.identify.positions.words import findings, unseen
 from sk120stiff.show.figures import gap_waterfall
 from sk120stiff.show.figures.budget import budget_bars
 from sk120stiff.show.report import (

@@ -12,10 +12,10 @@ import numpy as np
 
 from sk120stiff.errors import listed
 from sk120stiff.explain import Explanation
-from sk120stiff.explain.absolute.explained import Explained
 from sk120stiff.explain.findings import TaskBudget
 from sk120stiff.explain.judge.budget import within_joints
 from sk120stiff.explain.judge.gear_curve import GearCurve, gear_curves
+from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.model import Parameter, Share
 from sk120stiff.show.figures import Estimate, parameter_forest

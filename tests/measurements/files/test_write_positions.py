@@ -11,7 +11,7 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.measurements import Measurements
-from tests.absolute.arm import NAMES, poses, urdf
+from tests.positions.arm import NAMES, poses, urdf
 
 COUNT = 6
 HEAD = ",".join(f"{name}[deg]" for name in NAMES)

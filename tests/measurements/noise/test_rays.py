@@ -10,9 +10,9 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
-from sk120stiff.identify.absolute.calibrate import Calibration, calibrate
-from sk120stiff.identify.absolute.line_of_sight import by_line_of_sight
-from tests.absolute.arm import NAMES, errors, poses, tracked, urdf, write
+from sk120stiff.identify.positions.calibrate import Calibration, calibrate
+from sk120stiff.identify.positions.residuals.line_of_sight import by_line_of_sight
+from tests.positions.arm import NAMES, errors, poses, tracked, urdf, write
 
 ALONG, ACROSS = 2e-4, 2e-5  # m: a camera knows least of all how far away things are
 UNKNOWN = "position: {frame: unknown}\npoint: {xyz: [0, 0, 0], unit: mm, fit: true}\n"

@@ -10,7 +10,7 @@ import pytest
 
 from sk120stiff import load_robot
 from sk120stiff.errors import InputError
-from sk120stiff.explain.absolute.run import FEWEST
+from sk120stiff.explain.positions.run import FEWEST
 from sk120stiff.measurements.importers import Imported, Told, import_readings
 from sk120stiff.measurements.importers.tracker.positions_or_differences import ENOUGH, TakenAs
 from tests.measurements.importers.tracked import Campaign, campaign, ur5

@@ -1,0 +1,1 @@
+"""One file per command, or a folder where a command takes several."""

@@ -1,0 +1,1 @@
+"""What positions could not have shown, and the poses that would."""

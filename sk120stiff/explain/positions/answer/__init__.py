@@ -1,0 +1,1 @@
+"""Positions explained: the answer, its documents, and what to do next."""

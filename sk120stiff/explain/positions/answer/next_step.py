@@ -1,0 +1,116 @@
+"""What to do now that positions are explained: one paragraph for every verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sk120stiff.explain.findings import likely
+from sk120stiff.explain.positions.answer.balancer import tell_apart
+from sk120stiff.explain.positions.answer.explained import EVEN, SURE
+from sk120stiff.identify.positions.residuals.pure_error import pure_error
+
+if TYPE_CHECKING:
+    from sk120stiff.explain.positions.answer.explained import Explained
+
+
+def headline(answer: Explained) -> str:
+    """The verdict as a sentence: how many names are settled, and which are open."""
+    if answer.verdict == "none" and answer.remainder is None:
+        return (
+            "No cause is named. The noise is not stated, so whether something is missing stays "
+            "open: what is left may be noise."
+        )
+    if answer.verdict == "none":
+        return "Model and data agree: nothing is missing that these readings show."
+    if answer.verdict == "outside":
+        return "Something is missing that no effect of the catalogue explains for sure."
+    left = answer.final.form is not None or answer.lacking
+    more = "; more is left than noise makes" if left else ""
+    open_ones = [item for item in answer.findings if not item.settled]
+    count = len(answer.findings)
+    if not open_ones:
+        if count == 1:
+            return f"Something was missing, and its name is settled{more}."
+        return f"{count} causes were missing, each by a name that is settled{more}."
+    told = "; ".join(
+        " or ".join((item.effect.id, *item.alternatives)) + f" ({likely(item.probability)})"
+        for item in open_ones
+    )
+    if count == 1:
+        return f"Something was missing: its name is not settled{more}. Open: {told}."
+    if max(item.probability for item in answer.findings) < EVEN:
+        return (
+            f"Something was missing, and {count} names stand for it together, none of them likely "
+            f"by itself{more}. Open: {told}."
+        )
+    settled = count - len(open_ones)
+    named = (
+        ("none of their names is", "the name of one is")[settled]
+        if settled < 2
+        else (f"the names of {settled} are")
+    )
+    return f"{count} causes were missing: {named} settled{more}. Open: {told}."
+
+
+def next_step_of_positions(answer: Explained) -> str:
+    """Plain sentences: what the model may be used for, and what to measure or to mend."""
+    first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
+    unit, whole = answer.final.problem.unit, answer.final.problem.rms_unit
+    use = f"Use model.yaml: at poses that no fit saw it is off by {last:.4g} {whole}"
+    if last < first:
+        before = answer.steps[0].label if answer.displaced else "the registered arm"
+        use += f" where {before} alone is off by {first:.4g} {unit}"
+    said = [f"{use}."]
+    named = {item.effect.id for item in answer.findings}
+    most = next((share for share in answer.budget if share.name in named), None)
+    if answer.displaced and most is not None:
+        said.append(
+            f"Of what was named {most.name} moves the point most, {1e6 * most.rms:.4g} µm rms per "
+            "axis: look there first if the arm is to be mended."
+        )
+    elif answer.families and not answer.displaced:
+        largest = max(answer.families, key=lambda name: answer.families[name])
+        share = f"{1e6 * answer.families[largest]:.4g} {unit}"
+        said.append(
+            f"What takes off most is {largest}, {share}: look there first if the arm is to be "
+            "mended."
+        )
+    said += dict.fromkeys(i.effect.advice for i in answer.findings if i.effect.advice)
+    if answer.verdict == "ambiguous":
+        if answer.following is not None:
+            one, other = answer.following.between
+            said.append(
+                f"Measure the readings of next_poses.csv, append them to the file and run this "
+                f"again: they tell {one} from {other}. Until then either name foretells alike."
+            )
+        elif any(item.others or item.probability < SURE for item in answer.findings):
+            said.append("Take each open name as one of its class; readings of other kinds tell it.")
+        said += tell_apart(answer.findings)
+    if answer.guess is not None and answer.guess_heldout < answer.steps[-1].heldout_rms:
+        said.append(
+            f"best_guess.yaml is off by {1e6 * answer.guess_heldout:.4g} {unit} there: nearer, for "
+            "reasons that are not confirmed."
+        )
+    if answer.verdict == "outside":
+        said.append(
+            "Trust it no farther than poses like those measured: more is left than the noise makes."
+        )
+    again = pure_error(answer.final)
+    if answer.remainder is None and again is not None:
+        size = f"{1e6 * again.sigma:.3g}"
+        length, angle = f"sigma: {size}, unit: um", f"rotation: {size}, rotation_unit: urad"
+        own = length if unit == "µm" else angle
+        said.append(
+            f"Write 'noise: {{{own}}}' into the YAML file, which the repeats show, so that what is "
+            "left can be told from it."
+        )
+    elif answer.remainder is None:
+        said.append(
+            "Repeat a few poses, or state the noise, so that what is left can be told from it."
+        )
+    elif answer.verdict == "outside":
+        said.append(
+            "To learn what the rest is: repeat a few poses, approach them from both sides, and "
+            "note the temperature."
+        )
+    return " ".join(said)

@@ -1,0 +1,116 @@
+"""How probable a chosen name is, and which others explain as much in its place."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sk120stiff.arrays import Array
+from sk120stiff.explain.positions.select.choose import RIVAL, confirmed, frames_of, gain, usual
+from sk120stiff.explain.positions.select.linear import Linear
+from sk120stiff.explain.priors import FALLEN
+
+
+def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple[int, ...], float]:
+    """Candidates that explain as much in the place of one of the chosen, and its probability."""
+    rivals, _, weight = _rivals(linear, chosen, e)
+    return rivals, float(weight[:-1].sum() / weight.sum())
+
+
+def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:
+    """Probability that what all of the chosen take off together is no part of an unknown cause.
+
+    Of errors of geometry that stand for one another none is likely by itself.
+    """
+    return 1.0 / (1.0 + _impostor(linear, chosen, ()))
+
+
+def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
+    """Probability of one of the chosen, and of each that explains as much in its place.
+
+    Together they have that of `alternatives`; among themselves they share it by their usual odds.
+    """
+    rivals, prior, weight = _rivals(linear, chosen, e)
+    own = weight[:-1] * np.exp(prior)
+    share = weight[:-1].sum() / weight.sum() * own / own.sum()
+    names = [linear.candidates[c].id for c in (e, *rivals)]
+    return dict(zip(names, map(float, share), strict=True))
+
+
+def _rivals(
+    linear: Linear, chosen: tuple[int, ...], e: int
+) -> tuple[tuple[int, ...], list[float], Array]:
+    """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing.
+
+    Evidence beyond that of the chosen one, which poses left out bear out, is no evidence where they
+    do not: few readings far from all others make as much.
+    """
+    noise = linear.noise(chosen)
+    rest = linear.less(chosen, e)
+    nothing = linear.score(rest, noise)
+    own = linear.score(chosen, noise)
+    frames = set(frames_of(linear))
+    alone = e in frames and frames & set(rest)  # no frame is exact where others are off
+    others = {
+        c: linear.score((*rest, c), noise)
+        for c in linear.may_join(rest)
+        if c not in chosen and (not alone or c in frames)
+    }
+    rivals = tuple(
+        c
+        for c, score in others.items()
+        if score + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
+        and score > nothing
+    )
+    most = own + float(np.log(FALLEN))
+    for c in rivals:
+        if others[c] > most and not confirmed(gain(linear, (*rest, c), c), linear):
+            others[c] = most
+    scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
+    prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
+    weight = np.exp(scores - scores.max())
+    narrow = float(weight[:-1].sum() / weight.sum())
+    sure = _beside_what_every_arm_has(linear, chosen, (e, *rivals), narrow, len(others))
+    doubt = (1.0 - sure) / max(sure, 1e-300) + _impostor(linear, chosen, rest)
+    weight[-1] = doubt * weight[:-1].sum()
+    return rivals, prior, weight
+
+
+def _beside_what_every_arm_has(
+    linear: Linear, chosen: tuple[int, ...], own: tuple[int, ...], narrow: float, others: int
+) -> float:
+    """Probability of a name, averaged over the chosen model and that with all frames and springs.
+
+    Where few numbers are left over, those that nothing asked for may bring as much; where many are,
+    they cost more than they explain, and do not count.
+
+    Args:
+        linear: The positions linearised.
+        chosen: The causes of the answer.
+        own: The name, and what explains as much in its place.
+        narrow: Its probability where nothing else is at work.
+        others: How many names were looked at in its place.
+    """
+    springs = (c for c, effect in enumerate(linear.candidates) if effect.joint_spring)
+    usual_ones = [c for c in (*frames_of(linear), *springs) if c not in (*chosen, *own)]
+    if not usual_ones:
+        return narrow
+    wide = (*chosen, *usual_ones)
+    without = linear.less(wide, own[0])
+    scores = [linear.score(each, linear.noise(each)) for each in (chosen, wide, without)]
+    taken = 1.0 / (1.0 + np.exp(np.clip(scores[2] + np.log(others + 1.0) - scores[1], -50, 50)))
+    share = 1.0 / (1.0 + np.exp(np.clip(scores[0] - scores[1], -50.0, 50.0)))
+    return float((1.0 - share) * narrow + share * min(taken, narrow))
+
+
+def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) -> float:
+    """Odds that a name is the part of an unknown cause that looks like it.
+
+    An unknown cause is at work where what is left is smooth. It is as likely to be like the name
+    as not: of the squares of such causes any share may be alike (the squared cosine between the
+    two, evenly spread), and the rest is left.
+    """
+    if not linear.smooth:
+        return 0.0
+    after, before = (linear.left_out(each, linear.noise(each)) for each in (chosen, rest))
+    left = linear.smooth * after
+    return left / (left + max(before - after, 0.0))

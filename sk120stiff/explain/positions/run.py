@@ -1,0 +1,331 @@
+"""Positions explained: register, choose among all that may be missing, fit exactly, say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from sk120stiff.effects import Catalogue, Effect, all_effects
+from sk120stiff.effects.geometry import JointOffset
+from sk120stiff.effects.options import Options as EffectOptions
+from sk120stiff.errors import InputError
+from sk120stiff.explain.findings import Contender
+from sk120stiff.explain.options import Options, refuse_unknown
+from sk120stiff.explain.positions.advise.detectable import detectable, probabilities
+from sk120stiff.explain.positions.advise.other_poses import (
+    NextPoses,
+    elsewhere,
+    never_told,
+    next_poses,
+)
+from sk120stiff.explain.positions.answer.balancer import balancing, or_balancer, shared
+from sk120stiff.explain.positions.answer.explained import EVEN, Explained, Named
+from sk120stiff.explain.positions.judge.accounts import (
+    families_of,
+    held_out_rms,
+    heldout_on,
+    numbers_told,
+    rms,
+    springs_of,
+    steps_of,
+    suspects_of,
+)
+from sk120stiff.explain.positions.judge.changed import changed
+from sk120stiff.explain.positions.judge.laws import (
+    Laws,
+    beside_laws,
+    by_best_laws,
+    laws_at,
+    with_fewer,
+)
+from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
+from sk120stiff.explain.positions.judge.remainder import where_it_lives
+from sk120stiff.explain.positions.select.candidates import linear_at
+from sk120stiff.explain.positions.select.choose import (
+    Chosen,
+    by_likeliest,
+    choose,
+    gain,
+    nothing_named,
+    threshold,
+)
+from sk120stiff.explain.positions.select.linear import Linear, everything
+from sk120stiff.identify import refuse_for_positions, refuse_plan
+from sk120stiff.identify.positions.calibrate import (
+    Calibration,
+    calibrate,
+    refined,
+    with_model_form,
+    with_values_of,
+)
+from sk120stiff.identify.positions.checks.drift import creeping
+from sk120stiff.identify.positions.checks.force_axes import refuse_other_forces
+from sk120stiff.identify.positions.checks.gravity_direction import refuse_another_gravity
+from sk120stiff.identify.positions.checks.payload_unit import pounds
+from sk120stiff.identify.positions.checks.remounted import refuse_remounted
+from sk120stiff.identify.positions.checks.slips import refuse_pushed
+from sk120stiff.identify.positions.residuals.remainder import (
+    LEVEL,
+    chance_of_noise,
+    left_beyond_noise,
+)
+from sk120stiff.identify.positions.uncertainty.compliant_parts import beside_parts
+from sk120stiff.measurements import Measurements
+from sk120stiff.model import Model
+
+FEWEST = 10  # poses below which no other pose can confirm a name
+FEWEST_LOADED = 6  # the same where each is read by what loads do, several numbers to a pose
+TOGETHER = 0.8  # the same of all of them as one, where each may stand for the others
+MORE = 1.2  # times as much left as to first order: the fit went another way
+ROUNDS = 3  # of choosing anew about what was fitted
+
+
+def explain_positions(
+    model: Model,
+    readings: Measurements,
+    *,
+    holdout: Measurements | None = None,
+    options: Options | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Explained:
+    """See `sk120stiff.explain.run.explain`.
+
+    Effects of the model are taken for granted; what else yields or is off is looked for.
+    """
+    options, usual, catalogue = options or Options(), Options(), model.catalogue
+    refuse_for_positions(
+        readings,
+        assume=options.assume,
+        max_effects=options.max_effects != usual.max_effects,
+        alpha=options.alpha != usual.alpha,
+        prior=options.prior,
+    )
+    refuse_plan(readings)
+    every = all_effects(model.robot, absolute=True, catalogue=catalogue)
+    refuse_unknown(every, options, model)
+    if holdout is not None and (holdout.absolute is None or holdout.is_plan):
+        raise InputError(
+            "the held-out readings are no positions", remedy="Hold out readings of the same kind."
+        )
+    joints = model.robot.actuated, model.robot.kinds
+    readings = readings.with_joints(*joints)
+    tell = progress or (lambda _phrase, _share: None)
+    _refuse_few_poses(readings)
+    tell("registering the tracker", 0.05)
+    base = calibrate(
+        model, readings, geometry=False, waves=False, shared=False, catalogue=catalogue
+    )
+    refuse_other_forces(base, readings)
+    hangs = refuse_another_gravity(base, readings)
+    tell("searching the catalogue", 0.2)
+    seen = _about(base, readings, catalogue)
+    linear, found, laws, hidden = _selected(base, seen, options, catalogue)
+    beside = everything(linear)
+    pushed = refuse_pushed(seen, readings, *beside) or refuse_remounted(seen, readings, *beside)
+    tell("fitting exactly", 0.5)
+    final = _exactly(base, seen, linear, found, readings, catalogue)
+    for _ in range(ROUNDS):
+        about = _selected(base, final, options, catalogue)
+        if set(_picked(*about[:2])) == set(_picked(linear, found)):
+            seen, (linear, found, laws, hidden) = final, about
+            break
+        again = _exactly(base, final, *about[:2], readings, catalogue)
+        if _less_likely(again, final, linear):
+            break
+        seen, (linear, found, laws, hidden), final = final, about, again
+    if (apart := _with_own_values(linear, found, final)) != found:
+        found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
+    tell("what is left", 0.85)
+    final, guess, guessed = with_model_form(final), None, np.nan
+    suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
+    if final.form is not None:
+        linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
+        likely = [alternatives(linear, found.order, e)[1] for e in found.order]
+        if likely and max(likely) < EVEN:
+            if (together := of_all(linear, found.order)) < TOGETHER:
+                inside = numbers_told(seen, final, readings)
+                guess = beside_laws(final, linear, found.order, laws)
+                guess = beside_parts(guess, catalogue, options.exclude)
+                suspects = suspects_of(linear, found, seen, inside)
+                guessed = held_out_rms(linear, found.order, seen, inside)
+                found, laws = nothing_named(linear, found), {}
+                final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
+            else:
+                jointly = (
+                    "None of these names is likely by itself, since each may stand for the others; "
+                    "that what they take off together is theirs, and no part of an unknown cause, "
+                    f"has P = {together:.2f}.",
+                )
+    final = beside_parts(beside_laws(final, linear, found.order, laws), catalogue, options.exclude)
+    final = replace(
+        final,
+        notes=(
+            *hangs,
+            *pushed,
+            *jointly,
+            *final.notes,
+            *pounds(final),
+            *([] if pushed else creeping(final, readings)),
+            *balancing(final),
+            *changed(final, options.seed),
+        ),
+    )
+    noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
+    named, following = _named(linear, found, final, options)
+    gap = linear.gap(found.order, noise, held_out=True)
+    chance = chance_of_noise(final)
+    lacking = chance is not None and chance < LEVEL
+    verdict = "outside" if lacking else "none"
+    if named:
+        verdict = "named" if all(item.settled for item in named) else "ambiguous"
+    return Explained(
+        verdict=verdict,
+        findings=named,
+        base=base,
+        final=final,
+        linear=linear,
+        steps=steps_of(linear, found, base, seen, inside),
+        families=families_of(linear, found, seen, inside),
+        springs=springs_of(linear, found),
+        dropped=tuple(found.dropped.values()),
+        hidden=tuple(effect.id for effect in hidden),
+        rigid=tuple(
+            effect
+            for effect in (*linear.candidates, *hidden)
+            if effect.joint_spring and effect.id not in {each.id for each in final.model.effects}
+        ),
+        remainder=left_beyond_noise(final),
+        chance=chance,
+        suspects=suspects,
+        guess=guess,
+        guess_heldout=guessed,
+        where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
+        smallest=detectable(linear, found),
+        probabilities=shared(probabilities(linear, found), named, final),
+        following=following,
+        readings=readings,
+        heldout=None if holdout is None else heldout_on(final, base, holdout.with_joints(*joints)),
+    )
+
+
+def _selected(
+    base: Calibration, seen: Calibration, options: Options, catalogue: Catalogue
+) -> tuple[Linear, Chosen, Laws, tuple[Effect, ...]]:
+    """Names about a calibration, each by its best law; all their laws, and what does not show."""
+    linear, hidden = linear_at(base, options, catalogue, seen)
+    found = choose(linear)
+    if seen is not base:  # about the rigid arm near ties are not told
+        found = by_likeliest(linear, found)
+    laws = laws_at(linear, found.order, seen)
+    linear, found = with_fewer(linear, found, laws)
+    laws = {e: own for e, own in laws.items() if e in found.order}
+    return by_best_laws(linear, found.order, laws), found, laws, hidden
+
+
+def _about(base: Calibration, readings: Measurements, catalogue: Catalogue) -> Calibration:
+    """What causes are first looked for about: the arm with other zeros, where it is far off."""
+    if base.placed is None or not base.placed.far_off:
+        return base
+    robot = base.model.robot
+    present = {effect.id for effect in base.model.effects}
+    zeros = (JointOffset.at(robot, joint, EffectOptions()) for joint in robot.actuated)
+    return refined(base, [e for e in zeros if e.id not in present], readings, None, catalogue)
+
+
+def _with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen:
+    """Without names of which the exact fit tells nothing: all their values are one with others."""
+    own = {p.effect.id for p in final.model.parameters if p.free}
+    apart = tuple(e for e in found.order if linear.candidates[e].id in own)
+    why = "fits, but all its values are counted in others, which explain as much."
+    gone = {e: f"{linear.candidates[e].id} {why}" for e in found.order if e not in apart}
+    return Chosen(apart, {**found.dropped, **gone}) if gone else found
+
+
+def _refuse_few_poses(readings: Measurements) -> None:
+    """Stop where no other pose can confirm a name.
+
+    Raises:
+        InputError: There are too few.
+    """
+    said, count = readings.absolute, len(readings.masked().poses)
+    displaced = said is not None and said.channels.displacements_alone
+    fewest = FEWEST_LOADED if displaced else FEWEST
+    if count >= fewest:
+        return
+    alone = "geometry alone comes from 'sk120stiff identify'"
+    if displaced:
+        alone = "displacements of one point, without turns, are explained from two poses on"
+    raise InputError(
+        f"{count} poses: no other pose can confirm a name",
+        where=readings.place,
+        remedy=f"Measure at {fewest} poses or more; {alone}.",
+    )
+
+
+def _exactly(
+    base: Calibration,
+    seen: Calibration,
+    linear: Linear,
+    found: Chosen,
+    readings: Measurements,
+    catalogue: Catalogue,
+) -> Calibration:
+    """The chosen fitted at equilibrium, from where they were seen.
+
+    A load on springs is a product of two unknowns, and the way to it is curved: where more is left
+    than to first order, the values found so are another start.
+    """
+    picked = _picked(linear, found)
+    final = refined(base, picked, readings, seen.model, catalogue)
+    noise = linear.noise(found.order)
+    foretold = linear.gap(found.order, noise, held_out=False)
+    foretold = seen.problem.of_channels.undo(foretold)
+    if _left(final) <= MORE * rms(foretold):
+        return final
+    known = linear.values(found.order, noise)
+    wide = final.model
+    values = [known.get(p.name, p.internal) for p in with_values_of(wide, seen.model).parameters]
+    again = refined(base, picked, readings, wide.with_values(np.array(values)), catalogue)
+    return min(final, again, key=_left)
+
+
+def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> bool:
+    """Does a set that was chosen anew say clearly less of the readings (BIC)?
+
+    Clearly is by as much as a name must bring. Sets that say nearly the same take turns.
+    """
+    numbers = len(before.residual)
+    gain = numbers * np.log(_left(before) ** 2 / _left(again) ** 2)
+    if before.problem.common or again.problem.common:
+        gain = 2.0 * (again.log_likelihood - before.log_likelihood)
+    price = (len(again.x) - len(before.x)) * np.log(numbers)
+    return bool(gain - price < -2.0 * threshold(linear))
+
+
+def _left(found: Calibration) -> float:
+    return rms(found.problem.of_channels.undo(found.residual))
+
+
+def _picked(linear: Linear, found: Chosen) -> list[Effect]:
+    return [linear.candidates[e] for e in found.order]
+
+
+def _named(
+    linear: Linear, found: Chosen, final: Calibration, options: Options
+) -> tuple[tuple[Named, ...], NextPoses | None]:
+    """Every name with what explains as much, and the poses that would tell them apart."""
+    candidates = linear.candidates
+    rivals = {e: alternatives(linear, found.order, e) for e in found.order}
+    there = elsewhere(final, options) if any(own for own, _ in rivals.values()) else None
+    named, pairs = [], []
+    for e, (own, probability) in rivals.items():
+        others = [candidates[c] for c in own]
+        exact = never_told(final, there, candidates[e], others) if there and others else ()
+        ids = tuple(other.id for other in others)
+        item = Named(candidates[e], ids, exact, probability, gain(linear, found.order, e))
+        named.append(or_balancer(item, final))
+        pairs += [(candidates[e], other) for other in others if other.id not in exact][:1]
+    following = None if there is None else next_poses(final, there, pairs)
+    return tuple(named), following

@@ -1,0 +1,1 @@
+"""Causes that a calibration leaves out: which, how each would show, what it does to the rest."""

@@ -1,0 +1,1 @@
+"""What makes the values of a calibration more uncertain than the noise does."""
