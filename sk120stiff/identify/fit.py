@@ -52,6 +52,8 @@ class Fit:
         selection_uncertainty: (P_free,) by how much other possible models move the estimates;
             None: by nothing.
         left_out: (P_free,) standard errors by what the model is known to leave out; None: nothing.
+        omitted: (P_free, P_free) how it moves the estimates together, which foretells readings like
+            these alike; None: each for itself.
         foreign: (P_free, P_free) covariance by a cause that has no name; None: there is none.
         parts: (P_free, P_free) the same by parts that yield instead, which foretell readings like
             these alike; None: there is none.
@@ -77,6 +79,7 @@ class Fit:
     inflation: float = 1.0
     selection_uncertainty: Array | None = None
     left_out: Array | None = None
+    omitted: Array | None = None
     foreign: Array | None = None
     parts: Array | None = None
 
@@ -292,7 +295,12 @@ class Fit:
     def moves(self) -> Moves:
         """What is not of the readings' noise."""
         return Moves.of(
-            len(self.x), self.selection_uncertainty, self.left_out, self.foreign, self.parts
+            len(self.x),
+            self.selection_uncertainty,
+            self.left_out,
+            self.omitted,
+            self.foreign,
+            self.parts,
         )
 
     @property

@@ -16,12 +16,15 @@ class Moves:
     Attributes:
         models: (P,) by other models that are possible as well.
         left_out: (P,) standard errors by what the model is known to leave out.
+        omitted: (P, P) covariance by the same, also of values whose standard errors it is not in;
+            it moves them together, and such readings are foretold alike.
         foreign: (P, P) covariance by a cause that has no name, which moves them together.
         parts: (P, P) the same by parts that yield instead, which foretell such readings alike.
     """
 
     models: Array
     left_out: Array
+    omitted: Array
     foreign: Array
     parts: Array
 
@@ -31,14 +34,17 @@ class Moves:
         count: int,
         models: Array | None,
         left_out: Array | None,
+        omitted: Array | None,
         foreign: Array | None,
         parts: Array | None,
     ) -> Moves:
         """Of so many estimates; None: by nothing."""
         none, apart = np.zeros(count), np.zeros((count, count))
+        each = none if left_out is None else left_out
         return cls(
             none if models is None else models,
-            none if left_out is None else left_out,
+            each,
+            np.diag(each**2) if omitted is None else omitted,
             apart if foreign is None else foreign,
             apart if parts is None else parts,
         )
@@ -47,7 +53,11 @@ class Moves:
         """The same in other units: (P,) of one in the other."""
         both = np.outer(scale, scale)
         return Moves(
-            self.models * scale, self.left_out * scale, self.foreign * both, self.parts * both
+            self.models * scale,
+            self.left_out * scale,
+            self.omitted * both,
+            self.foreign * both,
+            self.parts * both,
         )
 
     @property

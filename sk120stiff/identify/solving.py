@@ -156,6 +156,7 @@ def widened_as(found: Fit, other: Fit) -> Fit:
             found,
             selection_uncertainty=other.selection_uncertainty,
             left_out=other.left_out,
+            omitted=other.omitted,
             foreign=other.foreign,
             parts=other.parts,
         )

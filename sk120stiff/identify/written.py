@@ -7,6 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
 from sk120stiff.model import CALIBRATED, ON_BOUND, TOGETHER, UNSEEN
@@ -43,3 +44,20 @@ def with_values(found: AnyFit) -> AnyFit:
             origin = CALIBRATED
         parameters[index] = replace(parameters[index], origin=origin)
     return replace(found, model=replace(model, parameters=tuple(parameters)))
+
+
+def leaving_out(found: AnyFit, moved: Array, told: Mask) -> AnyFit:
+    """The fit with what is left out counted beside what was counted before.
+
+    Args:
+        found: The fit.
+        moved: (Q, Q) covariance of those estimates that are on no bound.
+        told: (P,) estimates into whose standard errors it goes.
+    """
+    before, moving = found.moves, ~found.at_bound
+    omitted = before.omitted.copy()
+    omitted[np.ix_(moving, moving)] += moved
+    own = np.zeros(len(found.x))
+    own[moving] = np.diag(moved)
+    left_out = np.sqrt(before.left_out**2 + np.where(told, own, 0.0))
+    return with_values(replace(found, left_out=left_out, omitted=omitted))

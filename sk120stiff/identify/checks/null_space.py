@@ -65,7 +65,9 @@ def known_together(fit: Fit, effects: Collection[str]) -> tuple[str, ...]:
         fit: A fit of a model with these effects.
         effects: Their ids.
     """
-    fit = replace(fit, selection_uncertainty=None, left_out=None, foreign=None, parts=None)
+    fit = replace(
+        fit, selection_uncertainty=None, left_out=None, omitted=None, foreign=None, parts=None
+    )
     own = {k for k, each in enumerate(fit.parameters) if each.effect.id in effects}
     return tuple(said for members, said in _together(fit) if len(members) > 1 and members & own)
 

@@ -32,13 +32,18 @@ SHARED = "these positions tell it together with errors of geometry only"
 
 
 def known_calibration(found: Calibration) -> Model:
-    """The fitted model with its uncertainty, as it is written to a file."""
+    """The fitted model with its uncertainty, as it is written to a file.
+
+    What a cause that it lacks does at poses like these is in what is left, not in what the values
+    that stand for it foretell there.
+    """
     problem = found.problem
     sigma = None
     if len(problem.lengths):
         sigma = problem.stated_sigma or (noise_of(found) if problem.common else found.rms)
     source = f"{found.problem.load_cases.count} readings of positions"
-    known = known_estimates(found, sigma, source)
+    alike = replace(found, omitted=found.moves.omitted + found.moves.foreign, foreign=None)
+    known = known_estimates(alike, sigma, source)
     return found.model.known(replace(known, remainder=remainder_at_other_poses(found)))
 
 

@@ -11,7 +11,7 @@ from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.beforehand import Beforehand
 from sk120stiff.identify.solve.covariance import covariance_of
-from sk120stiff.identify.solve.polish import seen_directions
+from sk120stiff.identify.solve.polish import FAINTEST, seen_directions
 from sk120stiff.identify.uncertainty.left_over import LeftOver, left_over
 from sk120stiff.model import Model, Remainder, Uncertainty
 from sk120stiff.model.uncertainty import load_size
@@ -19,6 +19,7 @@ from sk120stiff.robot.anatomy import arm_length
 
 SIGNIFICANT = 0.05  # probability of noise alone below which something is left
 AS_WELL = 3.0  # of the noise's variance: other models fit worse by up to 10 in χ², evenly spread
+OMITTED = 1.0  # of the noise's variance: what is left out is told no worse than what was estimated
 TINY = 1e-12  # of the moves' variance
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
@@ -61,7 +62,8 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     covariance = fit.unit**2 * per_noise @ per_noise.T
     covariance = covariance + _beside_noise(fit, covariance)
     whole = (null**2).T @ (problem.plausible / span)  # a change that does not show is plausible
-    unseen = np.where(lost[:, None], null * size[:, None] * whole, 0.0).T
+    shows = np.linalg.norm(informed, axis=0)[:, None] * span[:, None] * np.abs(null) * whole
+    unseen = np.where(lost[:, None] | (shows > FAINTEST), null * size[:, None] * whole, 0.0).T
     nothing = np.sqrt(np.diag(covariance)) < ROUNDING * np.abs(unseen).max(axis=0, initial=0.0)
     covariance = np.where(nothing | nothing[:, None], 0.0, covariance)
     return Uncertainty(
@@ -79,25 +81,31 @@ def _beside_noise(fit: Fit, covariance: Array) -> Array:
     """What is not of the readings' noise, of the internal values.
 
     Another model that explains the readings as well moves the estimates, each by so much, and yet
-    together to where the readings are predicted nearly alike: of independent moves with the
-    covariance M those that readings of a few times the noise allow have the parallel sum of M and
-    a Σ, M − M (M + a Σ)⁻¹ M, taken here in units of the moves. A foreign cause has moved them by
-    more than noise may, and together.
+    together to where the readings are predicted nearly alike; so does what the model leaves out. A
+    foreign cause has moved them by more than noise may, and together.
     """
     moves = fit.moves.scaled(fit.problem.scale)
-    M = np.diag(moves.models**2) + moves.parts
-    own = np.flatnonzero(np.diag(M))
-    size = np.sqrt(np.diag(M)[own])
+    models = _together(np.diag(moves.models**2) + moves.parts, AS_WELL * covariance)
+    return np.asarray(moves.foreign + models + _together(moves.omitted, OMITTED * covariance))
+
+
+def _together(moved: Array, noise: Array) -> Array:
+    """(P, P) covariance of moves such that readings are predicted alike up to some noise.
+
+    Of independent moves with the covariance M those that readings of covariance Σ of the estimates
+    allow have the parallel sum of both, M − M (M + Σ)⁻¹ M, taken here in units of the moves.
+    """
+    together = np.zeros(moved.shape)
+    own = np.flatnonzero(np.diag(moved))
+    size = np.sqrt(np.diag(moved)[own])
     inside = np.ix_(own, own)
-    moved = M[inside] / np.outer(size, size)
-    noise = AS_WELL * covariance[inside] / np.outer(size, size)
-    together = np.zeros(covariance.shape)
-    noise[np.diag_indices(len(own))] += TINY
-    both = moved @ np.linalg.solve(moved + noise, noise)
+    M, sigma = moved[inside] / np.outer(size, size), noise[inside] / np.outer(size, size)
+    sigma[np.diag_indices(len(own))] += TINY
+    both = M @ np.linalg.solve(M + sigma, sigma)
     shares, directions = np.linalg.eigh(0.5 * (both + both.T))
     half = size[:, None] * directions * np.sqrt(np.maximum(shares, 0.0))  # rounding is no variance
     together[inside] = half @ half.T
-    return np.asarray(np.diag(moves.left_out**2) + moves.foreign + together)
+    return together
 
 
 def _source(fit: Fit, noise: Yardstick) -> str:

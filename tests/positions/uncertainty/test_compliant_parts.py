@@ -74,8 +74,19 @@ def test_positions_like_these_are_foretold_as_before(tmp_path: Path) -> None:
     wide = beside_parts(narrow)
     errors_of = [foretold(each) for each in (narrow, wide)]
     assert errors_of[0] <= errors_of[1] < 2.5 * errors_of[0]
-    loose = replace(wide, parts=None, foreign=wide.parts)
-    assert foretold(loose) > 4.0 * errors_of[0]
+    assert wide.parts is not None
+    problem = wide.problem
+    slope = problem.channel_gap(problem.values(wide.x), derivative=True)[1][:, problem.free]
+    apart = np.diag(wide.parts) * problem.scale**2  # each value for itself
+    assert np.sqrt(np.mean(slope**2 @ apart)) > 4.0 * errors_of[0]
+
+
+def test_so_are_they_beside_a_cause_that_is_lacking(tmp_path: Path) -> None:
+    """What it does there is in what is left, not in the values that stand for it."""
+    narrow, _ = rocked(tmp_path, 1, share=1.0)
+    alone = replace(narrow, foreign=None)
+    assert narrow.lacks and narrow.foreign is not None
+    assert foretold(alone) <= foretold(narrow) < 1.5 * foretold(alone)
 
 
 def foretold(found: Calibration) -> float:

@@ -20,7 +20,7 @@ from scipy.optimize import minimize
 from sk120stiff.arrays import Array, Index, Mask, lengths_of
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
-from sk120stiff.identify.written import AnyFit, with_values
+from sk120stiff.identify.written import AnyFit, leaving_out
 
 MOST = 480  # numbers that sizes are estimated from: time goes with the cube
 FEWEST = 12  # numbers left over, below which no error of the model can be told from noise
@@ -109,20 +109,22 @@ def widened(found: AnyFit, form: ModelForm | None) -> AnyFit:
         return found
     moving = ~found.at_bound
     inverse = np.linalg.pinv(found.jacobian[:, moving], rcond=1e-10)
-    variance = np.zeros(len(found.x))
+    moved = np.zeros((len(inverse), len(inverse)))
     for size, block in zip(form.sizes, _smooth(problem), strict=False):
-        variance[moving] += size * ((inverse @ block) ** 2).sum(axis=1)
+        taken = inverse @ block
+        moved += size * taken @ taken.T
     if form.sizes[-1] > 0.0:
         cell = _cells(problem)
         order = np.argsort(cell, kind="stable")
         first = np.flatnonzero(np.diff(cell[order], prepend=-1))
         together = np.add.reduceat(inverse[:, order], first, axis=1)
-        variance[moving] += form.sizes[-1] * (together**2).sum(axis=1)
-    # the part of it that counts as noise already
-    variance[moving] -= form.share * found.unit**2 * (inverse**2).sum(axis=1)
-    variance = np.maximum(variance, 0.0)
-    known = np.zeros(len(found.x)) if found.left_out is None else found.left_out
-    return with_values(replace(found, left_out=np.sqrt(known**2 + variance)))
+        moved += form.sizes[-1] * together @ together.T
+    whole = np.maximum(np.diag(moved), 1e-300)
+    # less the part of it that counts as noise already
+    rest = whole - form.share * found.unit**2 * (inverse**2).sum(axis=1)
+    less = np.sqrt(np.maximum(rest, 0.0) / whole)
+    told = np.ones(len(found.x), dtype=bool)
+    return leaving_out(found, moved * np.outer(less, less), told)
 
 
 def _some(problem: PoseProblem) -> Index:

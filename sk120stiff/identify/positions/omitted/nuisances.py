@@ -23,7 +23,7 @@ from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.omitted.own_weight import own_weight
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
-from sk120stiff.identify.written import with_values
+from sk120stiff.identify.written import leaving_out
 from sk120stiff.model import Model, Parameter
 
 COUNTED = (JointFrame, JointOffset, LinkLength, Mounting, ToolOffset, Viewpoint)
@@ -48,13 +48,11 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
     moving = ~found.at_bound
     left = found.residual / found.unit
     drawn = 1.0 / problem.prior[moving] ** 2
-    error = np.zeros(len(found.x))
-    error[moving] = np.sqrt(widened_by(more, kept[:, moving], drawn, left))
-    return with_values(replace(found, left_out=np.where(counted, 0.0, error)))
+    return leaving_out(found, moved_by(more, kept[:, moving], drawn, left), ~counted)
 
 
-def widened_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
-    """(P,) variance and square of the move that further parameters of unit size bring to others.
+def moved_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
+    """(P, P) covariance, and the move, that further parameters of unit size bring to others.
 
     Args:
         more: (M, k) derivative by them.
@@ -64,9 +62,12 @@ def widened_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
     both = np.concatenate([prior, np.ones(more.shape[1])])
     there, beside = posterior(np.column_stack([kept, more]), both, left)
     count = len(here)
-    return np.asarray(
-        np.maximum(np.diag(beside)[:count] - np.diag(alone), 0.0) + (there[:count] - here) ** 2
-    )
+    step = there[:count] - here
+    size = np.sqrt(np.diag(beside)[:count])
+    more_unsure = (beside[:count, :count] - alone) / np.outer(size, size)
+    spread, ways = np.linalg.eigh(more_unsure)
+    half = size[:, None] * ways * np.sqrt(np.maximum(spread, 0.0))  # rounding is no variance
+    return np.asarray(np.outer(step, step) + half @ half.T)
 
 
 def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:

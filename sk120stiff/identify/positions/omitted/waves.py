@@ -20,10 +20,10 @@ from sk120stiff.effects.options import Options
 from sk120stiff.effects.transmission_error import TransmissionError
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.noise.sizes import of_poses
-from sk120stiff.identify.positions.omitted.nuisances import COUNTED, widened_by
+from sk120stiff.identify.positions.omitted.nuisances import COUNTED, moved_by
 from sk120stiff.identify.positions.omitted.selection import Blocks
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
-from sk120stiff.identify.written import with_values
+from sk120stiff.identify.written import leaving_out
 
 CHANCE = 1e-3  # probability of values as far off zero by noise alone
 ROUNDING = 1e-12  # of the largest variance, below which one is none
@@ -78,12 +78,8 @@ def beside_waves(found: Fit, catalogue: Catalogue) -> Fit:
         return found
     drawn = 1.0 / problem.prior[moving] ** 2
     per = 1.0 / found.unit
-    widened = widened_by(per * more, per * kept, drawn, per * left)
-    variance = np.zeros(len(found.x))
-    variance[moving] = likely * widened
-    known = np.zeros(len(found.x)) if found.left_out is None else found.left_out
-    left_out = np.sqrt(known**2 + np.where(counted, 0.0, variance))
-    return with_values(replace(found, left_out=left_out))
+    moved = moved_by(per * more, per * kept, drawn, per * left)
+    return leaving_out(found, likely * moved, ~counted)
 
 
 def _likely(kept: Array, more: Array, left: Array, unit: float, *, stated: bool) -> float:

@@ -51,6 +51,7 @@ def beside_not_named(found: Calibration, effects: Sequence[Effect]) -> Calibrati
         as_fit(problem, at),
         selection_uncertainty=_padded(found.selection_uncertainty, more),
         left_out=_padded(found.left_out, more),
+        omitted=_padded(found.omitted, more),
         foreign=_padded(found.foreign, more),
         parts=_padded(found.parts, more),
     )
