@@ -20,6 +20,21 @@ OF_POSITIONS: tuple[Fault, ...] = (
         columns_exchanged_the_other_way=("sensor @ columns @ sensor.T", "sensor @ columns.T @ sensor.T"),
     ),
     *of(
+        "measurements/directions.py", *tests("positions", "gauge_forms"),
+        axes_turned_away_from_a_gauge=("v = np.cross(e, u)", "v = np.cross(u, e)"),
+        gauges_against_an_axis_as_along_it=("np.where(along < 0.0, -1.0, 1.0)", "np.where(along < 0.0, 1.0, 1.0)"),
+        axes_of_gauges_forgotten=("    if measurements.directions is None:\n        return np.broadcast_to", "    if True:\n        return np.broadcast_to"),
+        oblique_gauges_share_an_axis=("np.where(along_axes(directions), 0, 1 + axis)", "np.zeros_like(axis)"),
+    ),
+    *of(
+        "measurements/noise/model_form.py", *tests("positions", "gauge_forms"),
+        what_a_pose_has_along_axes_of_gauges=("np.swapaxes(turns_onto(measurements.directions), 1, 2)", "turns_onto(measurements.directions)"),
+    ),
+    *of(
+        "measurements/importers/columns/unread_axes.py", *tests("measurements/importers/columns", "axes_not_read", "reading_direction"),
+        a_gauge_against_its_axis_keeps_its_sign=("negated(cell) if s < 0.0 else cell", "cell"),
+    ),
+    *of(
         "identify/positions/noise/model_form.py", *tests("positions", "gauges"),
         a_smooth_error_of_what_does_not_yield=("    if not products:", "    if False:"),
     ),

@@ -14,6 +14,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.data_checks.passive import unit_displacements, unit_turns
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.data import Frame
+from sk120stiff.measurements.directions import turns_onto
 from sk120stiff.measurements.sensor_axes import Rpy
 from sk120stiff.robot import Robot, Screws
 
@@ -33,6 +34,7 @@ class Sheet:
         wrench: (N, 6) in axes of `force_frame` [N, N·m].
         displacement: (N, 3) in axes of `displacement_frame` [m]; NaN where not read.
         force_frame, displacement_frame: ``"base"`` or ``"tool"``.
+        directions: (N, 3) along which gauges read, or None; displacements are in their columns.
         sensor_rpy: Roll, pitch, yaw [rad] by which loads were turned into their frame, if at all.
         point, force_point: (3,) in the tool frame [m].
         kept: (N,) rows that are in use.
@@ -51,6 +53,7 @@ class Sheet:
     kept: Mask
     stretch: float = 0.0
     sensor_rpy: Rpy | None = None
+    directions: Array | None = None
 
     @property
     def measured(self) -> Array:
@@ -97,6 +100,7 @@ class Sheet:
             and self.kept is other.kept
             and self.force_frame == other.force_frame
             and self.displacement_frame == other.displacement_frame
+            and self.directions is other.directions
         )
 
     def columns(self) -> Array:
@@ -119,9 +123,11 @@ class Sheet:
 
     def _stated(self, at: Screws, columns: Array) -> Array:
         """What base axes have, in the axes of the displacements."""
-        if self.displacement_frame == "base":
-            return columns
-        return np.asarray(at.rotation.swapaxes(1, 2) @ columns)
+        if self.displacement_frame == "tool":
+            columns = np.asarray(at.rotation.swapaxes(1, 2) @ columns)
+        if self.directions is not None:
+            columns = np.swapaxes(turns_onto(self.directions[self.kept]), 1, 2) @ columns
+        return columns
 
     def at(self) -> Screws:
         """The M poses of the rows in use; each is worked out once, whatever its loads."""
@@ -173,6 +179,7 @@ class Sheet:
             joints=self.joints[taken],
             wrench=self.wrench[taken],
             displacement=self.displacement[taken],
+            directions=None if self.directions is None else self.directions[taken],
             kept=kept,
         )
 
@@ -184,7 +191,8 @@ class Sheet:
             return replace(self, kept=kept, joints=self.joints[rows])
         if wrench:
             return replace(self, kept=kept, wrench=self.wrench[rows])
-        return replace(self, kept=kept, displacement=self.displacement[rows])
+        along = None if self.directions is None else self.directions[rows]
+        return replace(self, kept=kept, displacement=self.displacement[rows], directions=along)
 
 
 def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
@@ -207,4 +215,5 @@ def sheet_of(robot: Robot, measurements: Measurements) -> Sheet | None:
         force_point=measurements.force_point,
         kept=measurements.use & measurements.wrench.any(axis=1),
         sensor_rpy=measurements.sensor_rpy,
+        directions=measurements.directions,
     ).in_part()

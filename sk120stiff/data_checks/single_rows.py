@@ -17,6 +17,7 @@ from sk120stiff.errors import listed
 from sk120stiff.measurements import Measurements
 
 AXES = ("dx", "dy", "dz")
+GAUGE = ("d", "d", "d")  # a number along a direction, whatever axis that is nearest to
 POINT = {0.1: "left", 10.0: "right"}  # which way a decimal point has to go
 
 
@@ -36,7 +37,7 @@ def slips_of_rows(
         return {}
     out = {}
     for row in rows:
-        for slip, mended in _single(read[row]):
+        for slip, mended in _single(read[row], AXES if readings.directions is None else GAUGE):
             changed = np.isfinite(read[row]) & (mended != read[row])
             off = np.abs(read[row] - told[row])[changed] >= limit
             if off.all() and _fits(mended, told[row], limit):
@@ -62,21 +63,21 @@ def _fits(read: Array, told: Array, limit: float) -> bool:
     return bool(seen.any() and (np.abs(read - told)[seen] < limit).all())
 
 
-def _single(read: Array) -> Iterator[tuple[str, Array]]:
+def _single(read: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:
     """Slips at one reading (3,), and what should have stood there."""
     seen = [k for k in range(3) if np.isfinite(read[k]) and read[k]]
     for count in (1, 2, 3):
         for axes in combinations(seen, count):
             mended = read.copy()
             mended[list(axes)] *= -1.0
-            yield f"{listed([AXES[k] for k in axes])} would fit with the other sign", mended
+            yield f"{listed([names[k] for k in axes])} would fit with the other sign", mended
     for axis in seen:
         for factor, way in POINT.items():
             mended = read.copy()
             mended[axis] *= factor
-            yield f"{AXES[axis]} would fit with its decimal point one place to the {way}", mended
+            yield f"{names[axis]} would fit with its decimal point one place to the {way}", mended
     for order in permutations(range(3)):
         moved = [k for k in range(3) if order[k] != k]
         if moved and set(moved) <= set(seen):
-            names = listed([AXES[k] for k in moved])
-            yield f"{names} would fit in one another's place", read[list(order)]
+            shown = listed([names[k] for k in moved])
+            yield f"{shown} would fit in one another's place", read[list(order)]

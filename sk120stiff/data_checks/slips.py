@@ -42,25 +42,30 @@ def of_axes(sheet: Sheet) -> Iterator[Correction]:
     for axis, name in enumerate(AXES):
         signs = np.ones(3)
         signs[axis] = -1.0
-        yield _displacement(
-            signs, f"d{name} seems to have the wrong sign", f"Negate the column d{name}."
-        )
+        said, remedy = f"d{name} seems to have the wrong sign", f"Negate the column d{name}."
+        if sheet.directions is not None:
+            said = f"gauges along {name} seem to read with the wrong sign"
+            remedy = "Turn their direction in ux, uy, uz by 180 deg, or negate what they read (d)."
+        yield _displacement(signs, said, remedy)
         yield _wrench(signs, f"f{name} seems to have the wrong sign", f"Negate the column f{name}.")
     for order in list(permutations(range(3)))[1:]:
         names = ", ".join(AXES[k] for k in order)
-        yield Correction(
-            f"the axes of the displacement seem to be swapped: dx, dy, dz look like {names}",
-            "Rename the headers of the displacement.",
-            lambda s, o=list(order): replace(s, displacement=s.displacement[:, o]),  # type: ignore[misc]
-        )
         both = [*order, *(3 + k for k in order)]
         yield Correction(
             f"the axes of the force seem to be swapped: fx, fy, fz look like {names}",
             "Rename the headers of the force.",
             lambda s, o=both: replace(s, wrench=s.wrench[:, o]),  # type: ignore[misc]
         )
+        if sheet.directions is not None:  # in a column of their own for all axes
+            continue
+        yield Correction(
+            f"the axes of the displacement seem to be swapped: dx, dy, dz look like {names}",
+            "Rename the headers of the displacement.",
+            lambda s, o=list(order): replace(s, displacement=s.displacement[:, o]),  # type: ignore[misc]
+        )
     yield from _frames(sheet)
-    yield from _units()
+    if sheet.directions is None:
+        yield from _units()
 
 
 def _frames(sheet: Sheet) -> Iterator[Correction]:
@@ -243,6 +248,8 @@ def of_rows(sheet: Sheet) -> Iterator[Correction]:
     """Corrections of the order of rows, for displacements, loads and joints apart."""
     count = len(sheet.joints)
     for name, which in PARTS:
+        if not which and sheet.directions is not None:
+            name = "the readings (d, ux, uy, uz)"
         for shift in SHIFTS:
             way, back = ("low", "up") if shift > 0 else ("high", "down")
             rows = f"{abs(shift)} row{'s' if abs(shift) > 1 else ''}"

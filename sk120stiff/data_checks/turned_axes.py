@@ -32,7 +32,8 @@ def quarter_turns(sheet: Sheet) -> Iterator[Correction]:
         for what in _turned_by(sheet):
             yield turned(quarter * np.pi / 2, what, sheet.force_frame, sheet.sensor_rpy)
     for axis in range(2):
-        yield _half_about(axis, "displacement", sheet)
+        if sheet.directions is None:
+            yield _half_about(axis, "displacement", sheet)
         yield _half_about(axis, "force", sheet)
     for zeros in _zeros(sheet):
         yield from zeros
@@ -129,8 +130,8 @@ def turned(angle: float, what: What, frame: Frame, rpy: Rpy | None = None) -> Co
 
 def _turned_by(sheet: Sheet) -> tuple[What, ...]:
     """What may be turned about z of the base: what is stated in its axes."""
-    if sheet.displacement_frame != "base":
-        return ("f",)
+    if sheet.displacement_frame != "base" or sheet.directions is not None:
+        return ("f",)  # along directions of their own numbers cannot be turned
     return ("both", "d", "f") if sheet.force_frame == "base" else ("d", "f")
 
 

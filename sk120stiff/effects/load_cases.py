@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Integers, Mask
 from sk120stiff.effects.latest import Latest
 from sk120stiff.effects.reference import Reference, references_of
+from sk120stiff.measurements.directions import axes_in_base
 from sk120stiff.robot import Robot, Screws, VirtualJoint
 from sk120stiff.stiffness.wrench import rotate, wrenches
 
@@ -308,7 +309,6 @@ def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
     wrench, follows = measurements.wrench, measurements.force_frame == "tool"
     if follows:
         wrench = rotate(rotation, wrench)
-    identity = np.broadcast_to(np.eye(3), rotation.shape)
     labels = measurements.poses
     index = {label: k for k, label in enumerate(labels)}
     plain = LoadCases(
@@ -318,7 +318,7 @@ def _load_cases_of(robot: Robot, measurements: Measurements) -> LoadCases:
         rotation=rotation,
         point=measurements.point,
         force_point=measurements.force_point,
-        reading_axes=rotation if measurements.displacement_frame == "tool" else identity,
+        reading_axes=axes_in_base(measurements, rotation),
         order=measurements.order_since_zero,
         time=measurements.time_since_zero,
         branch=_branch_signs(measurements),

@@ -42,8 +42,14 @@ from sk120stiff.explain.select.best_selection import (
 )
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
-from sk120stiff.identify import Fit, as_seen, axes_of_joint_angles, refuse_unusable
-from sk120stiff.measurements import Measurements, NoiseModel, decided
+from sk120stiff.identify import (
+    Fit,
+    as_seen,
+    axes_of_joint_angles,
+    gauges_as_displacements,
+    refuse_unusable,
+)
+from sk120stiff.measurements import Measurements, NoiseModel, as_displacements, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
 
@@ -66,6 +72,7 @@ def explain(
 
     Of absolute readings the answer is an `Explained`, with the same verdicts and methods. Effects
     of the model are taken for granted there: give ``Model(robot)`` to have springs looked for too.
+    What gauges alone read are displacements, unless nothing of the model may yield.
 
     Args:
         model: The base model; its effects are part of every model considered.
@@ -92,6 +99,9 @@ def explain(
     measurements, told = without_stuck(measurements)
     if told:
         warnings.warn(told, ToolkitWarning, stacklevel=3)
+    measurements = gauges_as_displacements(model, measurements)
+    if measurements.absolute is None and holdout is not None:
+        holdout = as_displacements(holdout)
     if catalogue is not None:
         model = replace(model, catalogue=catalogue)
     if measurements.absolute is not None:

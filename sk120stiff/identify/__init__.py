@@ -18,7 +18,13 @@ from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.report import fit_report
-from sk120stiff.identify.run import fit, known_model, refuse_for_positions, refuse_plan
+from sk120stiff.identify.run import (
+    fit,
+    gauges_as_displacements,
+    known_model,
+    refuse_for_positions,
+    refuse_plan,
+)
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solving import solve, solve_near
 from sk120stiff.identify.uncertainty.profile import profile_intervals
@@ -40,6 +46,7 @@ __all__ = [
     "drawn_parts",
     "fit",
     "fit_report",
+    "gauges_as_displacements",
     "held_out",
     "known_model",
     "known_together",

@@ -25,7 +25,7 @@ from sk120stiff.identify.positions.words import known_calibration
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.uncertainty.known_model import known_of_displacements
 from sk120stiff.identify.uncertainty.left_over import LeftOver
-from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements import Measurements, NoiseModel, as_displacements
 from sk120stiff.model import Model
 
 
@@ -73,14 +73,14 @@ def fit(
         >>> print(f"{1e6 * found.rms:.1f} µm rms")
         17.2 µm rms
     """
+    measurements = gauges_as_displacements(model, measurements)
     if measurements.absolute is not None:
         refuse_plan(measurements)
         refuse_for_positions(
             measurements, noise=noise is not None, method=method != "trf", robust=robust
         )
         readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
-        rigid = without_springs(model)
-        placed = calibrate(rigid, readings, geometry=False, waves=False, shared=False)
+        placed = _rigid(model, readings)
         refuse_other_forces(placed, readings)
         told = refuse_another_gravity(placed, readings)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
@@ -100,6 +100,28 @@ def fit(
     parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
     start = replace(model, parameters=tuple(parameters)) if kept else model
     return fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
+
+
+def gauges_as_displacements(model: Model, measurements: Measurements) -> Measurements:
+    """What gauges alone read of one point, as the displacements that a model with springs is of.
+
+    Of a model in which nothing yields, and other readings, they come back as they are.
+
+    Raises:
+        InputError: The forces seem meant in another way than stated.
+    """
+    moved = as_displacements(measurements)
+    if moved is measurements or not any(p.free for p in model.parameters):
+        return measurements
+    readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
+    refuse_other_forces(_rigid(model, readings), readings)
+    return moved
+
+
+def _rigid(model: Model, readings: Measurements) -> Calibration:
+    """Positions of the arm without springs, its instrument placed."""
+    rigid = without_springs(model)
+    return calibrate(rigid, readings, geometry=False, waves=False, shared=False)
 
 
 def known_model(fit: Fit, left: LeftOver | None = None) -> Model:

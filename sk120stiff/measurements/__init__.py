@@ -3,6 +3,7 @@
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.files.gauges_alone import as_displacements
 from sk120stiff.measurements.files.reading import read_measurements
 from sk120stiff.measurements.files.writing import write_measurements
 from sk120stiff.measurements.noise.law import NoiseModel, candidates, decided
@@ -22,6 +23,7 @@ __all__ = [
     "NoiseModel",
     "NoiseStatement",
     "Whitener",
+    "as_displacements",
     "candidates",
     "decided",
     "may_have_rays",

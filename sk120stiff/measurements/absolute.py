@@ -53,6 +53,7 @@ class Absolute:
         temperature: (N,) [degC], or None.
         series: N labels of what may have changed in between, or None.
         stations: N labels of where the instrument stood, or None.
+        zero: How the zero readings of gauges are shared, as stated.
     """
 
     channels: Channels
@@ -68,6 +69,7 @@ class Absolute:
     series: tuple[str, ...] | None = None
     fit_axes: bool = False
     stations: tuple[str, ...] | None = None
+    zero: Literal["shared", "separate", "unknown"] = "unknown"
 
     def select(self, index: Index) -> Absolute:
         """Some of the rows."""
@@ -176,6 +178,7 @@ def read_absolute(table: Table, roles: Roles, file: SettingsFile) -> Absolute:
         series=table.cells["series"] if "series" in roles.has else None,
         stations=table.cells["station"] if "station" in roles.has else None,
         fit_axes=fit_point if settings.rotation is None else settings.rotation.axes == "target",
+        zero=settings.displacement.zero,
     )
 
 

@@ -32,8 +32,9 @@ Zero = Literal["shared", "separate", "unknown"]
 
 # Row fields, cut together by `select`.
 PER_ROW = (
-    "pose", "joints", "wrench", "displacement", "sigma", "along", "order", "time", "branch",
-    "repeat", "use", "zero_group", "zero_count", "zero_order", "zero_time", "zero_joints", "line",
+    "pose", "joints", "wrench", "displacement", "directions", "sigma", "along", "order", "time",
+    "branch", "repeat", "use", "zero_group", "zero_count", "zero_order", "zero_time",
+    "zero_joints", "line",
 )  # fmt: skip
 
 
@@ -50,6 +51,8 @@ class Measurements(Tabular):
         sensor_rpy: Roll, pitch, yaw [rad] by which they were turned into these; None: not at all.
         displacement: (N, 3) loaded minus unloaded, m, in axes of `displacement_frame`; NaN in an
             axis that was not read, None in a plan.
+        directions: (N, 3) unit vectors that gauges read along, in the same axes; displacements are
+            then in axes of each row, see `directions.py`. None: in those of the frame.
         point, force_point: (3,) measured point and point of attack in the tool frame, m; the force
             acts at the measured point unless said otherwise.
         noise: What the data say of the uncertainty of one reading.
@@ -96,6 +99,7 @@ class Measurements(Tabular):
     force_frame: Frame = "base"
     sensor_rpy: Rpy | None = None
     displacement_frame: Frame = "base"
+    directions: Array | None = None
     noise: NoiseStatement = UNSTATED
     zero: Zero = "unknown"
     sigma: Array | None = None
@@ -141,6 +145,7 @@ class Measurements(Tabular):
         for name in ("zero_order", "zero_time"):
             self._array(name, (count,), may_be_nan=True)
         self._array("zero_joints", (count, n))
+        self._array("directions", (count, 3))
         self._array("use", (count,), np.bool_, np.ones(count))
         self._array("line", (count,), np.int64, np.zeros(count))
         self._array("repeat", (count,), np.int64)

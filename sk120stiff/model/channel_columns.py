@@ -6,15 +6,16 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.directions import of_columns
 from sk120stiff.robot.rotations import rotation_vector
 
 AXES = "xyz"
 
 
 def vectors_read(readings: Measurements) -> Array | None:
-    """(N, 3) displacements as read, else positions [m]; None where neither was."""
+    """(N, 3) displacements as read, else positions [m]; None where neither was, or by gauges."""
     if readings.absolute is None:
-        return readings.displacement
+        return readings.displacement if readings.directions is None else None
     channels = readings.absolute.channels
     return channels.position if channels.displacement is None else channels.displacement
 
@@ -44,15 +45,23 @@ def of_turns(
     }
 
 
+def gauges_of(readings: Measurements) -> tuple[Array | None, Array | None]:
+    """(N,) what gauges read [m] and (N, 3) along which directions; None where none did."""
+    if readings.directions is not None and readings.displacement is not None:
+        return of_columns(readings.directions, readings.displacement), readings.directions
+    channels = None if readings.absolute is None else readings.absolute.channels
+    return (None, None) if channels is None else (channels.shift, channels.along)
+
+
 def of_gauges(readings: Measurements, moved: Array) -> dict[str, Array]:
     """Displacement (N, 3) and reading along the directions of gauges; nothing where none was read.
 
     Cells of rows that no gauge read are empty.
     """
-    channels = None if readings.absolute is None else readings.absolute.channels
-    if channels is None or channels.shift is None or channels.along is None:
+    read, directions = gauges_of(readings)
+    if read is None or directions is None:
         return {}
-    d, along = channels.shift, np.einsum("ni,ni->n", channels.along, moved)
+    d, along = read, np.einsum("ni,ni->n", directions, moved)
     said = np.where(np.isfinite(d), along, np.nan)
     return {"predicted_d[mm]": said * 1e3, "d[mm]": d * 1e3, "gap_d[um]": (d - along) * 1e6}
 

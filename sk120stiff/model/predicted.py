@@ -11,8 +11,9 @@ from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
 from sk120stiff.errors import InputError, Refusal, warn
 from sk120stiff.files import html_table
-from sk120stiff.measurements import Measurements
+from sk120stiff.measurements import Measurements, as_displacements
 from sk120stiff.measurements.channels import inclined
+from sk120stiff.measurements.directions import in_the_frame
 from sk120stiff.model.channel_columns import (
     AXES,
     of_gauges,
@@ -149,7 +150,7 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
         >>> print(f"{1e6 * (gap**2).mean() ** 0.5:.1f} µm rms")
         26.4 µm rms
     """
-    model = model.under(measurements.gravity)
+    model, measurements = model.under(measurements.gravity), as_displacements(measurements)
     if measurements.absolute is None:
         return predict_with_uncertainty(model, seen_by(model, measurements))
     refuse_unknown_place(model, measurements)
@@ -159,7 +160,7 @@ def predict(model: Model, measurements: Measurements) -> Predicted:
 
 def seen_by(model: Model, measurements: Measurements) -> LoadCases:
     """The readings as a model sees them: what it says of zero readings is of its own file alone."""
-    load_cases = load_cases_of(model.robot, measurements)
+    load_cases = load_cases_of(model.robot, in_the_frame(measurements))
     fitted_to = model.provenance.get("data_hash", "")
     own = fitted_to in ("", f"sha256:{measurements.data_hash}")
     return load_cases if own else load_cases.of_another_file

@@ -66,12 +66,15 @@ def test_the_gap_is_told_along_the_gauge(run: Run, gauged: str, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(("words", "told"), [(("load", "unload"), True), (("load", "load"), False)])
+@pytest.mark.parametrize("mass", [0.5, 0.0])
 def test_a_branch_that_is_not_used_is_told(
-    run: Run, gauged: str, words: tuple[str, str], told: bool
+    run: Run, gauged: str, words: tuple[str, str], told: bool, mass: float
 ) -> None:
-    """Friction is sought of displacements alone, whatever the column promises."""
+    """Friction is sought of displacements alone, whatever the column promises; so are gauges."""
     head, *rows = Path(gauged).read_text("utf-8").splitlines()
-    lines = [f"{head},branch", *(f"{row},{words[k % 2]}" for k, row in enumerate(rows))]
+    lines = [f"{head},payload[kg],branch"]
+    lines += [f"{row},{mass},{words[k % 2]}" for k, row in enumerate(rows)]
+    told = told and mass > 0.0
     Path(gauged).write_text("\n".join(lines) + "\n", "utf-8")
     found = run("identify", gauged)
     assert found.code == 0, found.stderr

@@ -19,6 +19,7 @@ from sk120stiff.files import csv_text, together, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
+from sk120stiff.measurements.directions import in_the_frame
 from sk120stiff.measurements.poses import labels_to_come
 from sk120stiff.model import Model, write_model
 from sk120stiff.model.predicted import predict_what_holds, prediction_table
@@ -83,7 +84,8 @@ def replacing_results(out: Path) -> AbstractContextManager[None]:
 def _gaps(fitted: Model, readings: Measurements) -> str | None:
     """Prediction and gap of every row; None, with a warning, where there is none."""
     try:
-        predicted = predict_what_holds(fitted, load_cases_of(fitted.robot, readings))
+        load_cases = load_cases_of(fitted.robot, in_the_frame(readings))
+        predicted = predict_what_holds(fitted, load_cases)
         return csv_text(prediction_table(readings, predicted).items())
     except Exception as error:  # noqa: BLE001  (an answer is never lost to its table)
         warnings.warn(

@@ -21,7 +21,7 @@ from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 from sk120stiff.measurements.poses import SAME_JOINT, refuse_differing_joints
 from sk120stiff.measurements.sensor_axes import in_the_frame, stated_rpy
 from sk120stiff.measurements.table import columns
-from sk120stiff.measurements.table.branches import branches_by_order
+from sk120stiff.measurements.table.branches import branches_of
 from sk120stiff.measurements.table.columns import Roles
 from sk120stiff.measurements.table.rows import SMALLEST_SIGMA, Rows, read_rows
 from sk120stiff.measurements.table.table import Table, read_table
@@ -152,10 +152,12 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         force_point = np.array(settings.force.point.in_metres(file.place("force.point.unit")))
     if absolute is None:
         found = displacements(table, roles, rows, settings.displacement.zero)
-        branch, told = _branch(rows)
+        branch, told = rows.branch, None
+        if rows.measured is not None:
+            branch, told = branches_of(branch, rows.pose_index, rows.wrench, rows.clock)
     else:
         found = undisplaced(rows, absolute.channels.filled)
-        branch, told = rows.branch, ()
+        branch, told = rows.branch, None
     kept = found.rows
     return Measurements(
         path=table.path,
@@ -194,7 +196,7 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         use=found.use,
         absolute=absolute,
         spare=spare,
-        notes=(*_assumed_frames(settings, absolute, rows), *found.notes, *told),
+        notes=(*_assumed_frames(settings, absolute, rows), *found.notes, *([told] if told else [])),
         data_hash=data_hash,
     )
 
@@ -242,16 +244,6 @@ def _sigma_of_rows(rows: Rows, found: Displacements, roles: Roles) -> Array | No
     if rows.sigma is None or roles.measured != columns.DISPLACEMENTS:
         return None if rows.sigma is None else rows.sigma[found.rows]
     return of_one_reading(rows.sigma[found.rows], found.count)
-
-
-def _branch(rows: Rows) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
-    """Loading or unloading as written, else as the order tells; and what was taken for granted."""
-    if rows.branch is not None or rows.measured is None:
-        return rows.branch, ()
-    clock = next((c for c in (rows.order, rows.time) if c is not None), None)
-    sequence = np.arange(float(len(rows.pose))) if clock is None else clock
-    found = branches_by_order(rows.pose_index, rows.wrench, sequence)
-    return (None, ()) if found is None else (found[0], (found[1],))
 
 
 def _assumed_frames(settings: Settings, absolute: Absolute | None, rows: Rows) -> list[str]:

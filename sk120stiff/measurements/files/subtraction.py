@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -49,20 +50,25 @@ def displacements(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displac
 
 
 def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacements:
-    count = len(rows.pose)
-    group = np.arange(count) if zero == "separate" else rows.pose_index
+    found = as_written(rows, zero)
+    told: dict[str, Any] = {}
     if "zero_group" in roles.has:
-        group = counts(table, "zero_group", 0)
-    number = counts(table, "zero_count", 1) if "zero_count" in roles.has else np.ones(count)
-    order = time = None
+        told["group"] = counts(table, "zero_group", 0)
+    if "zero_count" in roles.has:
+        told["count"] = counts(table, "zero_count", 1).astype(np.int64)
     if "zero_order" in roles.has:
-        order = table.numbers("zero_order", allow_blank=True)
-    elif zero != "separate":
-        order = _mean_without_load(rows, rows.order)
+        told["order"] = table.numbers("zero_order", allow_blank=True)
     if "zero_time" in roles.has:
-        time = table.quantity("zero_time", "time", allow_blank=True)
-    elif zero != "separate":
-        time = _mean_without_load(rows, rows.time)
+        told["time"] = table.quantity("zero_time", "time", allow_blank=True)
+    return replace(found, **told)
+
+
+def as_written(rows: Rows, zero: Zero) -> Displacements:
+    """Displacements as rows state them, of whose zero readings no column tells anything."""
+    count = len(rows.pose)
+    order = time = None
+    if zero != "separate":
+        order, time = (_mean_without_load(rows, when) for when in (rows.order, rows.time))
     use, notes = rows.use, []
     if rows.measured is not None:
         # Such a row is the zero reading minus itself: exact by construction, so it tells nothing,
@@ -81,8 +87,8 @@ def _as_written(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displacem
         rows=np.arange(count),
         displacement=rows.measured,
         zero=zero,
-        group=group,
-        count=number.astype(np.int64),
+        group=np.arange(count) if zero == "separate" else rows.pose_index,
+        count=np.ones(count, dtype=np.int64),
         order=order,
         time=time,
         use=use,
@@ -130,13 +136,10 @@ def _from_positions(table: Table, roles: Roles, rows: Rows, zero: Zero) -> Displ
             )
     if rows.measured is None:
         raise ValueError("positions are missing")
-    sequence = next(
-        (s for s in (rows.order, rows.time) if s is not None), np.arange(float(len(rows.pose)))
-    )
     if "zero_group" in roles.has:
         group = _given_groups(table, rows)
     elif zero == "separate":
-        group = group_by_run(rows.pose_index, rows.loaded, rows.use, sequence)
+        group = group_by_run(rows.pose_index, rows.loaded, rows.use, rows.clock)
     else:
         group = rows.pose_index
     axes = np.isfinite(rows.measured).sum(axis=1)

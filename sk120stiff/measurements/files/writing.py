@@ -15,12 +15,14 @@ from sk120stiff import files, units
 from sk120stiff.arrays import Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.directions import of_columns
 from sk120stiff.measurements.files.writing_positions import (
     columns_of_positions,
     settings_of_positions,
 )
 from sk120stiff.measurements.noise_statement import Instrument
 from sk120stiff.measurements.table.columns import (
+    DIRECTIONS,
     DISPLACEMENTS,
     FORCES,
     MOMENTS,
@@ -131,7 +133,13 @@ def columns_of(
     sigma = m.sigma
     if sigma is not None and m.displacement is not None and measured == DISPLACEMENTS:
         sigma = of_displacement(sigma, m.zero_count)
-    for names, values in ((measured, m.displacement), (UNCERTAINTIES, sigma)):
+    moved = m.displacement
+    if m.directions is not None and moved is not None:
+        yield _numbers("d", of_columns(m.directions, moved), length, "length")
+        for k, name in enumerate(DIRECTIONS):
+            yield name, map(_digits, m.directions[:, k])
+        moved = None
+    for names, values in ((measured, moved), (UNCERTAINTIES, sigma)):
         if values is not None:
             for k, name in enumerate(names):
                 yield _numbers(name, values[:, k], length, "length")

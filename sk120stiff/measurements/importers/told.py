@@ -160,6 +160,13 @@ def texts(column: Column) -> tuple[str, ...]:
     return tuple(repr(float(cell) * column.factor) for cell in column.cells)
 
 
+def negated(cell: str) -> str:
+    """The number of a cell with the other sign, digit by digit."""
+    if not float(cell):
+        return cell
+    return cell[1:] if cell.startswith("-") else f"-{cell}"
+
+
 def refuse_other_joints(sheet: Sheet, left: list[Column], actuated: tuple[str, ...]) -> None:
     """Refuse a file with columns that look like joints which the robot does not have.
 

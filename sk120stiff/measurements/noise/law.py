@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError, two_digits
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.directions import read_apart
 from sk120stiff.measurements.noise.line_of_sight import SEEN, in_axes_of_sight
 from sk120stiff.measurements.noise.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise.repeats import ENOUGH, Repeated, repeated
@@ -172,7 +173,7 @@ class NoiseModel:
             if measurements.along is not None and np.isfinite(measurements.along).any():
                 stated, axes = in_axes_of_sight(measurements.along, measurements.sigma)
         own, zero = self._variances(measurements, sizes, stated)
-        group = measurements.zero_group
+        group = read_apart(measurements.directions, measurements.zero_group)
         if self.zero == "separate":
             own, zero, group = own + zero, np.zeros_like(own), np.arange(len(own))
         if weights is not None:
@@ -196,7 +197,8 @@ class NoiseModel:
         own, zero = self.variances(measurements, sizes)
         same = np.eye(len(own), dtype=bool)
         if self.zero == "shared":
-            same = measurements.zero_group[:, None] == measurements.zero_group[None, :]
+            group = read_apart(measurements.directions, measurements.zero_group)
+            same = group[:, None] == group[None, :]
         full: Array = np.where(same, zero.T[:, :, None], 0.0)
         each = np.arange(len(own))
         full[:, each, each] += own.T

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.directions import turns_onto
 from sk120stiff.measurements.noise.whitening import Whitener
 from sk120stiff.measurements.poses import rows_by_label
 
@@ -97,8 +98,10 @@ def form_columns(measurements: Measurements) -> tuple[Array, Array]:
         if strength.any():
             features.append(load * (size / np.where(strength > 0.0, strength, np.inf))[:, None])
     load = np.concatenate(features, axis=1) if features else np.zeros((len(pose), 0))
-    proportional = np.einsum("ij,nk->nijk", np.eye(3), load).reshape(len(pose), 3, -1)
-    constant = np.broadcast_to(np.eye(3), (len(pose), 3, 3))
+    constant: Array = np.broadcast_to(np.eye(3), (len(pose), 3, 3))
+    if measurements.directions is not None:  # what a pose has of its own has no axes of its rows
+        constant = np.swapaxes(turns_onto(measurements.directions), 1, 2)
+    proportional = np.einsum("nij,nk->nijk", constant, load).reshape(len(pose), 3, -1)
     return proportional, constant
 
 

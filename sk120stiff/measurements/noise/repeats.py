@@ -14,8 +14,9 @@ from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Integers, Mask
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.directions import read_apart
 from sk120stiff.measurements.noise.whitening import Whitener
-from sk120stiff.measurements.table.branches import branches_by_order
+from sk120stiff.measurements.table.branches import branches_of
 
 Zero = Literal["shared", "separate"]
 
@@ -111,23 +112,20 @@ def borne_out(measurements: Measurements) -> Mask:
 
 
 def cells_of(m: Measurements) -> Integers:
-    """(N,) equal numbers for rows with the same joint values, wrench and branch.
+    """(N,) equal numbers for rows with the same joint values, wrench and branch, and the same axes.
 
     Where no branch is written, loads that rise and then fall tell it.
     """
     _, place = np.unique(np.round(m.joints, 9), axis=0, return_inverse=True)
     branches = ("", "load", "unload")
     branch = np.zeros(m.n_readings)
-    words = m.branch
-    if words is None:
-        clock = next((c for c in (m.order, m.time) if c is not None), np.arange(float(len(branch))))
-        found = branches_by_order(m.pose_index, m.wrench, clock)
-        words = None if found is None else found[0]
+    clock = next((c for c in (m.order, m.time) if c is not None), np.arange(float(len(branch))))
+    words = branches_of(m.branch, m.pose_index, m.wrench, clock)[0]
     if words is not None:
         branch = np.array([branches.index(b) for b in words], dtype=np.float64)
     keys = np.column_stack([place, np.round(m.wrench, 9), branch])
     cells: Integers = np.unique(keys, axis=0, return_inverse=True)[1]
-    return cells
+    return read_apart(m.directions, cells)
 
 
 def _left(
@@ -144,7 +142,7 @@ def _left(
     whitener = (
         Whitener(own + zero, np.zeros_like(own), np.arange(len(own)))
         if separate
-        else Whitener(own, zero, m.zero_group)
+        else Whitener(own, zero, read_apart(m.directions, m.zero_group))
     )
     place, member = _places(m, cell)
     means = np.repeat((member[:, None] == np.arange(member.max() + 1))[:, None, :], 3, axis=1)

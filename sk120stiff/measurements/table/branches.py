@@ -48,6 +48,14 @@ def branches_by_order(
     )
 
 
+def branches_of(
+    written: tuple[str, ...] | None, pose: Integers, wrench: Array, sequence: Array
+) -> tuple[tuple[str, ...] | None, str | None]:
+    """Loading or unloading as written, else as the order tells; and what was taken for granted."""
+    found = branches_by_order(pose, wrench, sequence) if written is None else None
+    return (written, None) if found is None else found
+
+
 def _ways_down(force: Array, size: Array) -> Mask | None:
     """(k,) the rows of one pose that follow the peak of their direction; None without a way."""
     alone = _way_down(force, size)

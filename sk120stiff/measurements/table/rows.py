@@ -45,6 +45,12 @@ class Rows:
     repeat: Integers | None
     use: Mask
 
+    @property
+    def clock(self) -> Array:
+        """(N,) order or time of the rows; where neither is there, as they stand in the file."""
+        known = next((c for c in (self.order, self.time) if c is not None), None)
+        return np.arange(float(len(self.pose))) if known is None else known
+
 
 def read_rows(
     table: Table, roles: Roles, mapping: Mapping[str, str | float], place: str

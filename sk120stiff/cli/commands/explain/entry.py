@@ -25,6 +25,7 @@ from sk120stiff.explain import Explained, Explanation, Options, explain
 from sk120stiff.explain.options import MOST_EFFECTS
 from sk120stiff.explain.priors import priors_from
 from sk120stiff.identify import refuse_for_positions
+from sk120stiff.measurements import as_displacements
 from sk120stiff.model import Model
 from sk120stiff.plan import Cell
 
@@ -83,7 +84,7 @@ def command(
         seed=seed,
         cell=opened_cell(robot, cell, data, model),
     )
-    positions = readings.absolute is not None
+    positions = as_displacements(readings).absolute is not None
     if positions:
         refuse_for_positions(readings, **{
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,

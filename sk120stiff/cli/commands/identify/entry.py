@@ -36,6 +36,7 @@ from sk120stiff.identify import (
     contradiction,
     fit,
     fit_report,
+    gauges_as_displacements,
     held_out,
     known_model,
     lack_of_fit,
@@ -96,11 +97,12 @@ def command(
     will_write(out)
     readings, robot = open_data(data)
     readings, stuck = without_stuck(readings)
+    plain = start_model(robot, model)
+    readings = gauges_as_displacements(plain, readings)
     readings, wild = without_wild(robot, readings)
     for told in (stuck, wild):
         if told:
             warn(told)
-    plain = start_model(robot, model)
     start = plain
     for name in effects or ():
         start = with_effect(start, name, readings)

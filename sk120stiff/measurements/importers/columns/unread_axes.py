@@ -9,13 +9,22 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.errors import listed
+from sk120stiff.measurements.directions import along_axes, in_columns, nearest_axes
 from sk120stiff.measurements.importers.columns.load_states import WITH, WITHOUT, state_of
 from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet
-from sk120stiff.measurements.importers.told import Told, numbers, quantity, texts, unit_of
+from sk120stiff.measurements.importers.told import (
+    Told,
+    negated,
+    numbers,
+    quantity,
+    texts,
+    unit_of,
+)
 from sk120stiff.measurements.table.columns import DIRECTIONS, DISPLACEMENTS
 
 GAUGE = "gauge"  # meaning of what a dial gauge reads along `DIRECTIONS`
 IN_A_LETTER = "reading direction"  # meaning of a column that has +X, -Z and so on instead
+TINY = 1e-300  # of a direction that is none
 BLANK = {
     "", "nan", "n/a", "na", "n.a.", "n.a", "-", "--", "---", "none", "null", "#n/a",
 }  # fmt: skip
@@ -119,18 +128,33 @@ def displacements(
 def _of_gauges(
     sheet: Sheet, told: Told
 ) -> tuple[Array, tuple[tuple[str, tuple[str, ...]], ...], list[Column], list[str]]:
-    """What was read along directions; along no axis of the base on its own."""
+    """What was read along directions; as displacements where these are axes of the base."""
     gauge, *along = sheet.those(GAUGE, *DIRECTIONS)
     unit = unit_of(sheet, gauge, "length", told)
-    quantity(sheet, gauge, "length", unit)
-    for column in along:
-        numbers(sheet, column)
+    read = quantity(sheet, gauge, "length", unit)
+    directions = np.column_stack([numbers(sheet, column) for column in along])
+    said = (
+        f"{gauge.header} is what a gauge read along the direction "
+        f"{', '.join(dict.fromkeys(c.header for c in along))}, in axes of the base"
+    )
+    taken, cells = [gauge, *along], texts(gauge)
+    unit_vectors = directions / np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), TINY)
+    marker = sheet.get("marker")
+    one = marker is None or len(set(marker.cells)) == 1
+    if one and along_axes(unit_vectors).all():
+        axis, sign = nearest_axes(unit_vectors)
+        signed = [negated(cell) if s < 0.0 else cell for cell, s in zip(cells, sign, strict=True)]
+        axes = tuple(
+            (
+                f"{name}[{unit}]",
+                tuple(c if a == k else "" for c, a in zip(signed, axis, strict=True)),
+            )
+            for k, name in enumerate(DISPLACEMENTS)
+        )
+        said += ": each number stands under dx, dy or dz, the other two were not read."
+        return in_columns(unit_vectors, read), axes, taken, [said]
     written = (
-        (f"d[{unit}]", texts(gauge)),
+        (f"d[{unit}]", cells),
         *((name, texts(column)) for name, column in zip(DIRECTIONS, along, strict=True)),
     )
-    said = [
-        f"{gauge.header} is what a gauge read along the direction "
-        f"{', '.join(dict.fromkeys(c.header for c in along))}, in axes of the base."
-    ]
-    return np.full((len(sheet.lines), 3), np.nan), written, [gauge, *along], said
+    return np.full((len(sheet.lines), 3), np.nan), written, taken, [f"{said}."]

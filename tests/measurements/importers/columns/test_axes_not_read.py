@@ -88,6 +88,25 @@ def test_a_gauge_and_its_direction(tmp_path: Path) -> None:
     np.testing.assert_allclose(back.channels.along, [[0, 0, 1], [0.6, 0.8, 0], [1, 0, 0]])
 
 
+@pytest.mark.parametrize("off", ["0", "1e-9"])
+def test_gauges_along_axes_are_displacements(off: str, tmp_path: Path) -> None:
+    """Against an axis the number changes its sign, digit by digit; vectors need no unit length."""
+    rows = (f"-1,2470;{off};0;1", "0,442;0;-2;0", "0;-1;0;0")
+    path = tmp_path / "gauges.csv"
+    path.write_text(table("d[mm];ux;uy;uz", *rows), "utf-8")
+    found = import_readings(path, load_robot(ur5(), tool="tool0"), Told())
+    columns = dict(found.columns)
+    assert columns["dx[mm]"] == ("", "", "0")
+    assert columns["dy[mm]"] == ("", "-0.442", "")
+    assert columns["dz[mm]"] == ("-1.2470", "", "")
+    assert found.readings.absolute is None
+    np.testing.assert_allclose(
+        found.draft.measured,
+        [[np.nan, np.nan, -1.247e-3], [np.nan, -0.442e-3, np.nan], [0.0, np.nan, np.nan]],
+    )
+    assert any("each number stands under dx, dy or dz" in said for said in found.said)
+
+
 def test_beside_displacements_the_same_letters_are_uncertainties(tmp_path: Path) -> None:
     text = table("dx [mm];dy [mm];dz [mm];ux;uy;uz", "1;2;3;0,1;0,2;0,3", "1;2;3;0,1;0,2;0,3")
     assert written(draft_of(tmp_path, text))["sy[mm]"] == ("0.2", "0.2")

@@ -23,8 +23,8 @@ def read(folder: Path, text: str) -> Draft:
 def test_direction_of_a_force_and_of_a_gauge_by_letters(tmp_path: Path) -> None:
     text = HEAD + "S1;1;2;3;4;5;6;40;-Y;-11,01;+Y\nS1;1;2;3;4;5;6;80;X;5;-Z\n"
     found = written(read(tmp_path, text))
-    assert found["d[um]"] == ("-110.1", "50")
-    assert [found[f"u{axis}"] for axis in "xyz"] == [("0", "0"), ("1", "0"), ("0", "-1")]
+    assert [found[f"d{axis}[um]"] for axis in "xyz"] == [("", ""), ("-110.1", ""), ("", "-50")]
+    assert not any(header.startswith(("d[", "u")) for header in found)
 
 
 def test_what_the_letters_are_taken_for_is_told(tmp_path: Path) -> None:
@@ -36,7 +36,7 @@ def test_what_the_letters_are_taken_for_is_told(tmp_path: Path) -> None:
 def test_a_gauge_before_and_after_along_a_letter(tmp_path: Path) -> None:
     head = HEAD.replace("Messuhr [1/100 mm]", "Messuhr vorher [mm];Messuhr nachher [mm]")
     found = written(read(tmp_path, head + "S1;1;2;3;4;5;6;40;-Y;1,50;1,25;Y\n"))
-    assert found["d[mm]"] == ("-0.25",) and found["uy"] == ("1",)
+    assert found["dy[mm]"] == ("-0.25",) and found["dx[mm]"] == found["dz[mm]"] == ("",)
 
 
 def test_a_direction_that_is_no_axis(tmp_path: Path) -> None:

@@ -154,7 +154,7 @@ def test_gauges_under_a_noisy_sensor_have_its_mean_too(tmp_path: Path) -> None:
     """Each along a direction of its own: how they scatter per axis is not told."""
     q, _, F = held(np.random.default_rng(14).normal(0.0, 40.0, (9, 3, 3)), 6)
     head = ",".join(f"q{k}" for k in range(1, 7)) + ",d[mm],ux,uy,uz,fx[N],fy[N],fz[N]"
-    along = np.tile([0.1, 0.0, 0.0, 1.0], (len(q), 1))
+    along = np.tile([0.1, 0.0, 0.6, 0.8], (len(q), 1))
     path = tmp_path / "gauges.csv"
     np.savetxt(path, np.column_stack([q, along, noisy(F)]), delimiter=",", header=head,
                comments="", fmt="%.6f")  # fmt: skip

@@ -61,4 +61,4 @@ def test_a_gauge_along_a_direction(tmp_path: Path) -> None:
     head = f"{HEAD}Messuhr vorher (1/100 mm);Messuhr nachher (1/100 mm);ux;uy;uz\n"
     text = head + ROWS.replace("\n", ";0;0;-1\n")
     found = written(read(tmp_path, text))
-    assert found["d[um]"] == ("-9", "-12", "-72") and found["uz"] == ("-1", "-1", "-1")
+    assert found["dz[um]"] == ("9", "12", "72") and found["dx[um]"] == ("", "", "")
