@@ -16,6 +16,8 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks.correction import Correction, half_turn
 from sk120stiff.data_checks.from_a_row_on import from_a_row_on
+from sk120stiff.data_checks.part_rows import part_of_the_rows
+from sk120stiff.data_checks.part_words import correction_of, headers_of
 from sk120stiff.data_checks.passive import Passive, passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
 from sk120stiff.data_checks.slips import floor, floors, of_axes, of_joints, of_rows, sign_of
@@ -107,15 +109,32 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
     axes, other = _turned(start)
     if axes is not None and _clearly(now, axes, CLEARER):
         now, rival = axes, other
-    if not now.corrections and now.found.share < DOUBTFUL and len(sheet.kept) == len(lines):
-        below = from_a_row_on(sheet, lines, _drives(sheet.columns(), sheet.told, robot.n))
+    if now.found.share < DOUBTFUL and len(sheet.kept) == len(lines):
+        drives = _drives(sheet.columns(), sheet.told, robot.n)
+        below = None if now.corrections else from_a_row_on(sheet, lines, drives)
         if below is not None:
             mended = Tried((below.correction,), sheet, below.found)
             if _clearly(start, mended, CLEARER_TOGETHER):
                 now = mended
+        part = _in_a_part(start, measurements, drives)
+        if part is not None and _clearly(now, part, CLEARER_TOGETHER):
+            now, rival = part, None
     if not now.corrections or now.found.share < SOUND:
         return None
     return Slip(now.corrections, start.found.share, now.found.share, rival)
+
+
+def _in_a_part(start: Tried, measurements: Measurements, drives: int | None) -> Tried | None:
+    """Another unit or sign in a part of the rows; None where none is worth having looked for it."""
+    part = part_of_the_rows(start.sheet, drives)
+    if part is None or part.found.left <= 0.0:
+        return None
+    gained = start.sheet.told * np.log(start.left / part.found.left)
+    if gained < LUCK + part.price:
+        return None
+    headers = headers_of(measurements.path)
+    correction = correction_of(part, start.sheet, measurements.line, headers)
+    return None if correction is None else Tried((correction,), start.sheet, part.found)
 
 
 def _one_by_one(start: Tried, enough: float) -> tuple[Tried, Correction | None]:
