@@ -7,15 +7,18 @@ follow lie from those the model brings, or from those usual for an arm of that s
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.data_checks.passive import compliances
 from sk120stiff.effects import load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.model.typical import TYPICAL
-from sk120stiff.robot.anatomy import arm_length
+from sk120stiff.robot import Robot
+from sk120stiff.robot.anatomy import WHOLE_ARM, arm_length
 
 #: Softest and stiffest usual drive of a base joint, by the arm's stretched length. Orders of
 #: magnitude: a gear winds up by one to a few mrad at its rated torque, and rated torque goes with
@@ -50,10 +53,17 @@ UNITS = (
 )  # fmt: skip
 
 
-def yields_times(model: Model, measurements: Measurements) -> float | None:
+def yields_times(
+    model: Model, measurements: Measurements, apart: Sequence[int] = ()
+) -> float | None:
     """How many times as much the arm yields as the model's springs let it.
 
     None where the readings do not look like such an arm at all, so that one factor says nothing.
+
+    Args:
+        model: Of its springs only the elastic parameters count.
+        measurements: Readings.
+        apart: Of these, those that yield as they like, and of which nothing is said.
     """
     used = measurements.masked()
     if used.displacement is None:
@@ -61,11 +71,15 @@ def yields_times(model: Model, measurements: Measurements) -> float | None:
     elastic = [k for k, p in enumerate(model.parameters) if p.spec.reciprocal]
     load_cases = load_cases_of(model.robot, used)
     _, S = model.predict_with_sensitivities(load_cases, np.zeros(len(model.values)))
-    expected = np.where(used.read, S[:, :, elastic] @ model.values[elastic], 0.0)
-    size = float((expected**2).sum())
-    along = float((expected * used.moved).sum())
-    whole = float((used.moved**2).sum())
-    return along / size if along > 0.0 and along**2 > ALIKE * size * whole else None
+    each = np.where(used.read[:, :, None], S[:, :, elastic] * model.values[elastic], 0.0)
+    together = [k for k in range(len(elastic)) if k not in apart]
+    A = np.concatenate([each[:, :, together].sum(axis=2)[:, :, None], each[:, :, apart]], axis=2)
+    A = A.reshape(-1, A.shape[2])
+    c = compliances(A.T @ A, A.T @ used.moved.ravel())
+    if c is None or c[0] <= 0.0:
+        return None
+    along = float(c[0] * A[:, 0] @ used.moved.ravel())
+    return float(c[0]) if along > ALIKE * float((used.moved**2).sum()) else None
 
 
 @dataclass(frozen=True)
@@ -91,12 +105,13 @@ def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
         said = _times(times, "the model's springs let it (if they are of this arm)")
         return _doubt(said, times, 1.0 / KNOWN, KNOWN)
     length = arm_length(robot)
-    if any(robot.prismatic) or not USUAL[0][0] <= length <= USUAL[-1][0]:
+    rails = _rails(robot)
+    if rails is None or not USUAL[0][0] <= length <= USUAL[-1][0]:
         return None
     softest, stiffest = usual_stiffness(length)
     middle = float(np.sqrt(softest * stiffest))
-    base = np.where(np.arange(robot.n) < 3, middle, WRIST * middle)
-    times = yields_times(joint_spring_model(robot, base), measurements)
+    base = np.where(np.arange(robot.n) < 3 + len(rails), middle, WRIST * middle)
+    times = yields_times(joint_spring_model(robot, base), measurements, rails)
     if times is None:
         return None
     said = (
@@ -104,6 +119,17 @@ def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
         f"usual on an arm of {length:.2g} m are {softest:.2g} to {stiffest:.2g}"
     )
     return _doubt(said, times, middle / stiffest / BEYOND, middle / softest * BEYOND)
+
+
+def _rails(robot: Robot) -> list[int] | None:
+    """The slides that carry a whole arm, before its first joint; None: others slide, too.
+
+    What drives them is another matter: they yield as they like.
+    """
+    slides = np.flatnonzero(robot.prismatic).tolist()
+    turning = robot.n - len(slides)
+    rails = slides == list(range(len(slides))) and (not slides or turning >= WHOLE_ARM)
+    return slides if rails else None
 
 
 def usual_stiffness(length: float) -> tuple[float, float]:

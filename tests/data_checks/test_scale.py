@@ -1,17 +1,20 @@
 """Units of everything at once: told where the springs that follow are implausible, no finding."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sk120stiff import load_robot
 from sk120stiff.data_checks import find_slip, look
 from sk120stiff.data_checks.efforts import efforts_doubt
 from sk120stiff.data_checks.scale import USUAL, usual_stiffness
 from sk120stiff.effects import load_cases_of
 from sk120stiff.measurements import Measurements
+from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot
-from tests.data_checks.readings import ARMS, SCALES, Arm, loads_as_if
+from tests.data_checks.readings import ARMS, SCALES, UR5, Arm, loads_as_if
 
 
 @pytest.mark.parametrize(("factor", "unit"), SCALES)
@@ -33,6 +36,40 @@ def test_without_known_springs_the_size_of_the_arm_speaks() -> None:
     assert found is not None
     assert "the springs of the base joints come out at about" in found.sentence
     assert "forces in kgf labelled N" in found.sentence
+
+
+FIXED = '<joint name="world_joint" type="fixed">'
+RAIL = (
+    '<joint name="rail" type="prismatic"><axis xyz="0 1 0"/>'
+    '<limit lower="0" upper="4" effort="1e4" velocity="1"/>'
+)
+
+
+@pytest.mark.parametrize("rail", [1e8, 1e5])  # N/m
+def test_of_an_arm_on_a_rail_the_gears_are_judged_alone(tmp_path: Path, rail: float) -> None:
+    """However soft the rail is: its springs are no sign of a unit, and hide none."""
+    path = tmp_path / "track.urdf"
+    path.write_text(UR5.read_text(encoding="utf-8").replace(FIXED, RAIL), encoding="utf-8")
+    robot = load_robot(str(path), base="world", tool="tool0")
+    sound = ARMS["ur5"]().readings
+    track = np.random.default_rng(2).uniform(0.0, 4.0, 14).repeat(4)
+    joints = np.column_stack([track, sound.joints])
+    springs = [rail, 2.0e4, 2.2e4, 1.6e4, 4.0e3, 4.5e3, 3.5e3]
+    moved = joint_spring_model(robot, springs).deflect(joints, sound.wrench, point=sound.point)
+    readings = replace(
+        sound,
+        robot=str(path),
+        base_frame="world",
+        joint_names=robot.actuated,
+        joint_kinds=("length", *["angle"] * 6),
+        joints=joints,
+        displacement=moved,
+    )
+    start = joint_spring_model(robot)
+    assert look(start, readings).scale is None
+    found = look(start, replace(readings, displacement=moved / 25.4)).scale
+    assert found is not None
+    assert "displacements in inch labelled mm" in found.sentence
 
 
 @pytest.mark.parametrize("length", [0.5, 1.0, 1.7, 2.9, 3.3])
