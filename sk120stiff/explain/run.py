@@ -20,6 +20,7 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.beside_suspect import Account
+from sk120stiff.explain.judge.borne_out import borne_out
 from sk120stiff.explain.judge.goes_with import Foretold
 from sk120stiff.explain.judge.implausible import implausible
 from sk120stiff.explain.judge.judged_names import adequacy_of, judged_names
@@ -195,6 +196,7 @@ def explain_displacements(
             remainder.something_else,
         ),
         catalogue=model.catalogue,
+        borne_out=None if holdout is None or not effects else borne_out(base, final, holdout),
     )
     tell("what these readings cannot tell", 0.85)
     return completed(answer, found.regression, seed=options.seed, cell=options.cell)

@@ -50,6 +50,7 @@ class Answered:
     next_pairs: tuple[Any, ...] = ()
     guess: Any = None
     beyond: str | None = None
+    borne_out: Any = None
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
     slips: dict[int, str] = field(default_factory=dict)
 

@@ -16,6 +16,7 @@ from sk120stiff.explain.answer.probabilities import probabilities
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.answer.words import noise_words
 from sk120stiff.explain.findings import Finding, Step, TaskBudget, sentence_in
+from sk120stiff.explain.judge.borne_out import BorneOut
 from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.identify import Fit, unseen_reasons
 from sk120stiff.identify.report import noise_sentence
@@ -52,6 +53,7 @@ def verdict_document(
             "noise_floor": micrometres(answer.noise_floor),
             "p": answer.adequacy.chance,
             "steps": [step_entry(step) for step in answer.steps],
+            "borne_out": borne_out_document(answer.borne_out),
         },
         "next_step": next_step(answer),
         "budget": share_entries(answer.budget),
@@ -92,6 +94,21 @@ def verdict_document(
         "smallest_detectable": [asdict(item) for item in answer.smallest_detectable],
         "next_poses": next_poses,
         "next_pairs": [{**asdict(pair), "settled": pair.settled} for pair in answer.next_pairs],
+    }
+
+
+def borne_out_document(found: BorneOut | None) -> dict[str, Any] | None:
+    """What a hold-out file shows of what was named, as JSON."""
+    if found is None:
+        return None
+    return {
+        "file": found.file,
+        "rms_um": micrometres(found.gap),
+        "without_um": micrometres(found.without),
+        "share": found.share,
+        "std": found.std,
+        "poses": found.poses,
+        "contradicted": found.contradicted,
     }
 
 

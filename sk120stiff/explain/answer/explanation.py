@@ -14,6 +14,7 @@ from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options, load_cases
 from sk120stiff.errors import ToolkitError
 from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, Step, TaskBudget
 from sk120stiff.explain.judge.adequacy import Adequacy
+from sk120stiff.explain.judge.borne_out import BorneOut
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
 from sk120stiff.identify import Fit, Yardstick, known_together, yardstick
@@ -56,6 +57,7 @@ class Explanation:
         next_poses: (K, n) coordinates and (K, 6) wrenches to measure next, or None.
         next_pairs: Which names these tell apart, and how far.
         catalogue: The effects that were considered.
+        borne_out: What a hold-out file shows of what was named; None where there is none.
         task: What moves the tool on a given task, where one was asked for.
         details: Further figures for reports.
 
@@ -91,6 +93,7 @@ class Explanation:
     next_poses: tuple[Array, Array] | None = None
     next_pairs: tuple[Apart, ...] = ()
     catalogue: Catalogue = CATALOGUE
+    borne_out: BorneOut | None = None
     task: TaskBudget | None = None
     details: Mapping[str, Any] = field(default_factory=dict)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sk120stiff.data_checks import place_of
+from sk120stiff.effects.gravity_compensator import GravityCompensator
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.drifting import steady_offsets
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
@@ -36,12 +37,24 @@ def next_step(answer: Explanation) -> str:
     said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
     return " ".join(
         [
+            *_of_the_file(answer),
             *said[answer.verdict](answer),
             *filter(None, [steady_offsets(answer)]),
+            *_of_a_balancer(answer),
             *_of_the_beyond(answer),
             *_of_the_slips(answer),
         ]
     )
+
+
+def _of_the_file(answer: Explanation) -> list[str]:
+    """That a hold-out file contradicts the names, before what else is to be done."""
+    return [answer.borne_out.advice()] if contradicted(answer) and answer.borne_out else []
+
+
+def contradicted(answer: Explanation) -> bool:
+    """Are readings that no fit saw foretold no better with the names, where they should be?"""
+    return answer.borne_out is not None and answer.borne_out.contradicted
 
 
 def _of_the_beyond(answer: Explanation) -> list[str]:
@@ -87,12 +100,14 @@ def _none(answer: Explanation) -> list[str]:
 
 
 def _named(answer: Explanation) -> list[str]:
-    return [_gain(answer), *_largest(answer), *_of_noise_and_rest(answer)]
+    said = [] if contradicted(answer) else [_gain(answer), *_largest(answer)]
+    return [*said, *_of_noise_and_rest(answer)]
 
 
 def _ambiguous(answer: Explanation) -> list[str]:
     if answer.next_poses is None:
-        return [_gain(answer), *_of_noise_and_rest(answer)]
+        said = [] if contradicted(answer) else [_gain(answer)]
+        return [*said, *_of_noise_and_rest(answer)]
     return [
         f"Measure the {len(answer.next_poses[0])} readings of next_poses.csv, append them to the "
         f"file and run this again: {told_apart(answer)}.",
@@ -150,6 +165,21 @@ def _of_the_weight(answer: Explanation) -> list[str]:
         f"What is not in proportion to the load was sought about the preload by the arm's own "
         f"weight, {robot.total_mass:.3g} kg by the URDF: where these masses are not the arm's, "
         "write gravity: 0 into the YAML file and run this again."
+    ]
+
+
+def _of_a_balancer(answer: Explanation) -> list[str]:
+    """Without masses a balancer may be the arm's own weight on a gear that is not linear."""
+    if answer.final.model.robot.total_mass:
+        return []
+    names = (finding.effect.id for finding in answer.findings)
+    return [
+        f"{name} stands for a stiffness that goes with the posture. The robot file states no "
+        f"masses, and the arm's own weight on a gear of {name.partition(':')[2]} that is not "
+        "linear brings the same: write masses and their centres into it and run this again, or "
+        "see whether there is a balancer at all."
+        for name in names
+        if name.startswith(f"{GravityCompensator.name}:")
     ]
 
 

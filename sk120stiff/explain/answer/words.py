@@ -68,7 +68,10 @@ def plain_words(answer: Explanation) -> tuple[str, ...]:
 
 
 def held_out_words(answer: Explanation) -> tuple[str, ...]:
-    """Why readings that were left out are foretold so much worse than others are fitted."""
+    """That a hold-out file contradicts the names, or why it is foretold so much worse."""
+    told = answer.borne_out
+    if told is not None and told.contradicted:
+        return (told.sentence(),)
     offsets = _of_single_poses(answer)
     far = [
         step

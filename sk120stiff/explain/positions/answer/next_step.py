@@ -61,6 +61,9 @@ def next_step_of_positions(answer: Explained) -> str:
         before = answer.steps[0].label if answer.displaced else "the registered arm"
         use += f" where {before} alone is off by {first:.4g} {unit}"
     said = [f"{use}."]
+    held = None if answer.heldout is None else answer.heldout.borne_out
+    if held is not None and held.contradicted:
+        said = [held.advice(unit)]
     named = {item.effect.id for item in answer.findings}
     most = next((share for share in answer.budget if share.name in named), None)
     if answer.displaced and most is not None:

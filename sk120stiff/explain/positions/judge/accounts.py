@@ -11,6 +11,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadError, Weighing
 from sk120stiff.errors import listed
 from sk120stiff.explain.findings import Contender, Step
+from sk120stiff.explain.judge.borne_out import BorneOut, name_of, shown
 from sk120stiff.explain.positions.select.candidates import COMPLIANCE, family
 from sk120stiff.explain.positions.select.choose import Chosen, lengths
 from sk120stiff.explain.positions.select.linear import Linear
@@ -43,6 +44,7 @@ class HeldOutFile:
         rms_of_all: Rms with these rows [m].
         readings: All N readings.
         registered: Rms that the arm leaves there which was only registered [m].
+        borne_out: What these readings show of what was named; None: nothing.
         anew: What was found anew because the tracker stands elsewhere, in words; None: nothing.
     """
 
@@ -52,6 +54,7 @@ class HeldOutFile:
     rms_of_all: float
     readings: Measurements
     registered: float
+    borne_out: BorneOut | None = None
     anew: str | None = None
 
     def sentence(self, problem: PoseProblem) -> str:
@@ -67,7 +70,12 @@ class HeldOutFile:
             said += f". Not counted: {lie} far off all others, {listed(lines, most=LISTED)}; with "
             said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * self.rms_of_all:.3g} "
             said += problem.unit
-        return f"{said}." + (f" {self.anew}" if self.anew else "")
+        parts = [f"{said}."]
+        if self.borne_out is not None and self.borne_out.contradicted:
+            parts.append(self.borne_out.sentence(problem.rms_unit))
+        if self.anew:
+            parts.append(self.anew)
+        return " ".join(parts)
 
 
 def numbers_told(seen: Calibration, final: Calibration, readings: Measurements) -> Index:
@@ -204,13 +212,16 @@ def heldout_on(final: Calibration, base: Calibration, others: Measurements) -> H
     length = length[np.isfinite(length)]
     rigid = placed_anew(base.model, others)
     base = base if rigid is None else replace(base, model=rigid.model)
+    alone = _gap_of(base, others)[1]
+    poses = [problem.measurements.pose[row] for row in problem.rows[inside]]
     return HeldOutFile(
         rms=rms(gap[inside]),
         distance=float(length.mean()) if len(length) else np.nan,
         set_aside=wild,
         rms_of_all=rms(gap[counted]),
         readings=others,
-        registered=rms(_gap_of(base, others)[1][inside]),
+        registered=rms(alone[inside]),
+        borne_out=shown(alone[inside], gap[inside], poses, name_of(others)),
         anew=None if moved is None else moved.sentence(),
     )
 
