@@ -19,7 +19,10 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.data_checks.passive import Passive, compliances, of_sums
 from sk120stiff.data_checks.sheet import Sheet
 
-KGF, LBF, INCH, THOUSAND = 9.80665, 4.4482216152605, 25.4, 1e3
+KGF = 9.80665  # N, by definition
+LBF = 4.4482216152605  # N, by definition
+INCH = 25.4  # mm
+THOUSAND = 1e3  # N of a kN, um of a mm, mm of a m
 TIMES = tuple(by for one in (KGF, LBF, INCH, THOUSAND) for by in (one, 1.0 / one))
 EDGES = 12  # stretches of a file between whose ends parts are tried before they are moved by rows
 LEAST = 3  # rows of a part: fewer are looked at one by one, once a model is fitted
