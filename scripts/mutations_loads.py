@@ -28,7 +28,7 @@ OF_LOADS: tuple[Fault, ...] = (
         "data_checks/part_rows.py", *tests("data_checks", "part_rows"),
         parts_of_any_factor=("return abs(float(free[least])) < FREE", "return True or abs(float(free[least])) < FREE"),
         parts_that_are_noise=("if float(numbers.off(c)[rows].sum()) > (1.0 - OF_ITSELF) * size:", "if False:"),
-        parts_that_end_at_their_first_guess=("    step = M // EDGES\n", "    step = 0\n"),
+        parts_that_end_at_their_first_guess=("    step = M // EDGES + 1", "    step = 0"),
         rows_here_and_there_by_least_squares_alone=("for _ in range(ROUNDS):", "for _ in range(0):"),
         sums_of_every_second_row=("            if last % 2:", "            if False:"),
     ),

@@ -202,7 +202,7 @@ def _between(plain: _Numbers, other: _Numbers) -> _Tried | None:
 
     edges = np.unique(np.linspace(0, M, min(EDGES, M) + 1).astype(int)).tolist()
     best = min(combinations(edges, 2), key=left)
-    step = M // EDGES
+    step = M // EDGES + 1
     while step := (step + 1) // 2 if step > 1 else 0:
         moved = True
         while moved:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sk120stiff.data_checks import find_slip
+from sk120stiff.data_checks import find_slip, part_rows
 from sk120stiff.data_checks.part_rows import KGF, LBF, part_of_the_rows
 from sk120stiff.data_checks.part_words import places
 from sk120stiff.data_checks.search import Slip
@@ -164,6 +164,26 @@ def test_sound_readings_hold_no_part() -> None:
     for make in ARMS.values():
         arm = make()
         assert find_slip(arm.robot, numbered(arm.readings)) is None
+
+
+@pytest.mark.parametrize("count", [21, 56])
+@pytest.mark.parametrize("share", [(0.34, 1.0), (0.18, 0.53)])
+def test_the_very_rows_are_told(
+    count: int, share: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of rows that follow one another, too, which are not sorted one by one."""
+    monkeypatch.setattr(part_rows, "_here_and_there", lambda plain, other: None)
+    first, last = (round(end * count) for end in share)
+    readings = loads_times(KGF, slice(first, last)).select(np.arange(count))
+    sheet = sheet_of(ur5().robot, readings)
+    assert sheet is not None
+    found = part_of_the_rows(sheet, 6)
+    assert found is not None
+    told = np.zeros(count, dtype=bool)
+    told[found.rows] = True
+    if found.way.times < 1.0:
+        told = ~told
+    assert np.flatnonzero(told).tolist() == list(range(first, last))
 
 
 def test_few_rows_are_not_tried() -> None:
