@@ -78,8 +78,9 @@ def yields_times(
     c = compliances(A.T @ A, A.T @ used.moved.ravel())
     if c is None or c[0] <= 0.0:
         return None
-    along = float(c[0] * A[:, 0] @ used.moved.ravel())
-    return float(c[0]) if along > ALIKE * float((used.moved**2).sum()) else None
+    along = c * (A.T @ used.moved.ravel())  # what each explains of the readings' squares
+    beside = float((used.moved**2).sum() - along[1:].sum())
+    return float(c[0]) if along[0] > ALIKE * beside else None
 
 
 @dataclass(frozen=True)
