@@ -50,6 +50,8 @@ from sk120stiff.identify import (
     gauges_as_displacements,
     refuse_unusable,
 )
+from sk120stiff.identify.uncertainty.compliant_parts import beside_parts
+from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements, NoiseModel, as_displacements, decided
 from sk120stiff.measurements import candidates as noise_candidates
 from sk120stiff.model import Model
@@ -166,11 +168,14 @@ def explain_displacements(
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
+    written = beside_parts(
+        _as_written(final, noise), model.catalogue, _no_other_parts(options, findings)
+    )
     answer = Explanation(
         verdict=verdict,
         findings=findings,
         base=base,
-        final=_as_written(final, noise),
+        final=written,
         steps=steps,
         noise=noise,
         noise_reasons=(*decided(noise, used), *left.of_the_statement()),
@@ -184,6 +189,7 @@ def explain_displacements(
             *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),
             *held_rigid(final),
+            *mostly_parts(written),
             *_where_it_binds(found, options),
         ),
         beyond=None if beyond is None else beyond.id,
@@ -200,6 +206,11 @@ def explain_displacements(
     )
     tell("what these readings cannot tell", 0.85)
     return completed(answer, found.regression, seed=options.seed, cell=options.cell)
+
+
+def _no_other_parts(options: Options, findings: Sequence[Finding]) -> set[str]:
+    """Effects that are known to be rigid, or whose moves count as another name's."""
+    return {*options.exclude, *(name for each in findings for name in each.alternatives)}
 
 
 def _where_it_shows(remainder: Remainder, final: Fit) -> Remainder:

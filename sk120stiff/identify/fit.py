@@ -49,14 +49,9 @@ class Fit:
         spread: Noise seen over noise assumed, where a robust fit found it without its outliers.
         inflation: Variance of the estimates over that of least squares with the same weights
             (robust fits).
-        selection_uncertainty: (P_free,) by how much other possible models move the estimates;
-            None: by nothing.
-        left_out: (P_free,) standard errors by what the model is known to leave out; None: nothing.
-        omitted: (P_free, P_free) how it moves the estimates together, which foretells readings like
-            these alike; None: each for itself.
-        foreign: (P_free, P_free) covariance by a cause that has no name; None: there is none.
-        parts: (P_free, P_free) the same by parts that yield instead, which foretell readings like
-            these alike; None: there is none.
+        selection_uncertainty, left_out, omitted, foreign, parts: What moves the estimates beside
+            the noise, see `Moves`; None: nothing of the kind.
+        parts_by: (P_free,) the part that adds most to each, ``name:where``; empty: none counts.
 
     Examples:
         >>> import sk120stiff as sk
@@ -82,6 +77,7 @@ class Fit:
     omitted: Array | None = None
     foreign: Array | None = None
     parts: Array | None = None
+    parts_by: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         values = ", ".join(
@@ -294,14 +290,8 @@ class Fit:
     @property
     def moves(self) -> Moves:
         """What is not of the readings' noise."""
-        return Moves.of(
-            len(self.x),
-            self.selection_uncertainty,
-            self.left_out,
-            self.omitted,
-            self.foreign,
-            self.parts,
-        )
+        models, each = self.selection_uncertainty, self.left_out
+        return Moves.of(len(self.x), models, each, self.omitted, self.foreign, self.parts)
 
     @property
     def unit(self) -> float:

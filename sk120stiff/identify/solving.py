@@ -159,5 +159,6 @@ def widened_as(found: Fit, other: Fit) -> Fit:
             omitted=other.omitted,
             foreign=other.foreign,
             parts=other.parts,
+            parts_by=other.parts_by,
         )
     )

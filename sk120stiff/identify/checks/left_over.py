@@ -10,6 +10,7 @@ from sk120stiff.measurements.poses import rows_by_label
 # Length of a unit column beyond the regression below which it tells nothing: what a parameter does
 # within a pose beyond lines is of second order, and the lines have fixed the parameter long before.
 IMITATED = 0.01
+FAINT = 1e-9  # share of a column left beside the base below which it is rounding
 
 
 def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
@@ -23,6 +24,15 @@ def orthonormal(matrix: Array, keep: float = 1e-12) -> Array:
         return np.zeros((len(matrix), 0))
     U, singular, _ = np.linalg.svd(kept / np.linalg.norm(kept, axis=0), full_matrices=False)
     return np.asarray(U[:, singular > 1e-8 * singular[0]])
+
+
+def beside(Q: Array, block: Array) -> Array:
+    """(M, p) what orthonormal columns do not make up of others; zero where that is rounding."""
+    before = np.linalg.norm(block, axis=0)
+    for _ in range(2):
+        block = block - Q @ (Q.T @ block)
+    block[:, np.linalg.norm(block, axis=0) <= FAINT * before] = 0.0
+    return block
 
 
 def left_over(white: Array, inside: Array, local: Array, group: Index) -> tuple[float, int]:

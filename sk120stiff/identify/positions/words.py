@@ -17,6 +17,7 @@ from sk120stiff.identify.positions.residuals.remainder import remainder_at_other
 from sk120stiff.identify.positions.solve.minimal_parameters import Frozen
 from sk120stiff.identify.solve.polish import FAINTEST
 from sk120stiff.identify.uncertainty.known_model import known_estimates
+from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.stated_sizes import heavier_than_the_arm
 from sk120stiff.model import Model
@@ -132,7 +133,7 @@ def _branches(readings: Measurements) -> list[str]:
 
 def findings(found: Calibration, readings: Measurements) -> list[str]:
     """Everything beside the numbers, in sentences."""
-    said = list(found.notes)
+    said = [*found.notes, *mostly_parts(found)]
     if found.placed is not None:
         said.insert(0, f"Rigid robot placed: {1e3 * found.placed.rms:.3g} mm rms distance left.")
     said.append(gap_sentence(found))

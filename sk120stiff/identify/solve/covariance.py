@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import linalg
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import ParameterSpec
@@ -35,6 +36,18 @@ def covariance_of(jacobian: Array, held: Mask, span: Array) -> Array:
     block[lost, lost] = np.inf
     covariance[np.ix_(moving, moving)] = block
     return covariance
+
+
+def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
+    """(P,) step to the best values, and covariance, of derivative (M, P), prior (P,) and gap (M,).
+
+    The prior's own pull counts in neither: two steps are compared. Of what the numbers cannot see
+    neither says anything.
+    """
+    information = jacobian.T @ jacobian + np.diag(prior)
+    size = np.sqrt(np.diag(information))
+    inverse = linalg.pinvh(information / np.outer(size, size)) / np.outer(size, size)
+    return np.asarray(inverse @ (jacobian.T @ left)), np.asarray(inverse)
 
 
 def correlation_of(covariance: Array) -> Array:

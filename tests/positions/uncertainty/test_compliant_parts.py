@@ -13,12 +13,9 @@ from scipy.stats import norm
 import sk120stiff as sk
 from sk120stiff.identify import known_model
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
-from sk120stiff.identify.positions.uncertainty.compliant_parts import (
-    as_one,
-    beside_parts,
-    half_normal,
-)
+from sk120stiff.identify.positions.uncertainty.compliant_parts import beside_parts
 from sk120stiff.identify.positions.uncertainty.omitted_bias import beside_lacking
+from sk120stiff.identify.uncertainty.parts import as_one, half_normal
 from tests.positions.arm import NAMES, Array, errors, poses, tracked, write
 from tests.positions.missing_cause import FIT, YIELDS
 

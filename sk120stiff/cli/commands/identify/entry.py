@@ -48,6 +48,7 @@ from sk120stiff.identify import (
 )
 from sk120stiff.identify.positions.solve.start import options_of
 from sk120stiff.identify.report import noise_sentence, place_of
+from sk120stiff.identify.uncertainty.compliant_parts import if_parts_yield
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, write_model
 
@@ -128,6 +129,7 @@ def command(
     for doubt in (contradiction(found), axes_of_joint_angles(found)):
         if doubt is not None:
             warn(doubt)
+    parts = if_parts_yield(found, start.catalogue)
     intervals: Sequence[Interval] | None = None
     if profile:
         with progress_bar("profile") as report:
@@ -164,6 +166,7 @@ def command(
         "condition": found.condition,
         "correlation": found.correlation,
         "weak_directions": list(weak_directions(found)),
+        "if_parts_yield": list(parts),
         "noise": noise_sentence(found),
         "noise_reasons": found.reasons,
         "down_weighted": _down_weighted(found),
@@ -173,7 +176,7 @@ def command(
         "method": method.value,
         "model": out,
     }
-    return Answer(document, _parts(found, intervals, error, lines, out))
+    return Answer(document, _parts(found, intervals, error, lines, parts, out))
 
 
 def with_effect(model: Model, text: str, readings: Measurements) -> Model:
@@ -259,6 +262,7 @@ def _parts(
     intervals: Sequence[Interval] | None,
     error: HeldOut | None,
     lines: Sequence[Compared],
+    rigid: Sequence[str],
     out: Path | None,
 ) -> list[object]:
     parts: list[object] = [fit_report(found, profile=intervals)]
@@ -272,6 +276,7 @@ def _parts(
         parts.append(table("Models [µm rms per axis]", columns, [_cells(x) for x in lines]))
     if found.exceeds or yardstick(found).sigma is None:  # its errors rest on the model
         parts.append("Whether something is missing is what 'sk120stiff explain' looks for.")
+    parts += rigid
     if out is not None:
         parts.append(f"Written to {out}.")
     return parts

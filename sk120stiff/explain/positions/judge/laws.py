@@ -28,9 +28,10 @@ from sk120stiff.explain.positions.select.candidates import usual_sizes
 from sk120stiff.explain.positions.select.choose import Chosen, usual
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.explain.select.score import SWEEPS
+from sk120stiff.identify.checks.left_over import beside
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.omitted.nuisances import COUNTED, frames_off
-from sk120stiff.identify.positions.omitted.other_causes import beside, slopes
+from sk120stiff.identify.positions.omitted.other_causes import slopes
 from sk120stiff.identify.positions.solve.start import options_of
 from sk120stiff.identify.written import with_values
 from sk120stiff.model import Parameter

@@ -25,9 +25,10 @@ from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.options import Options
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify import pose_parts
+from sk120stiff.identify.checks.left_over import beside
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.omitted.nuisances import frames_off
-from sk120stiff.identify.positions.omitted.other_causes import beside, causes_at, slopes
+from sk120stiff.identify.positions.omitted.other_causes import causes_at, slopes
 from sk120stiff.measurements import Measurements
 from sk120stiff.robot import Robot
 

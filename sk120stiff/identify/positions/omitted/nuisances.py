@@ -14,7 +14,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy import linalg
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Catalogue, Effect, Mounting, Viewpoint
@@ -23,6 +22,7 @@ from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.omitted.own_weight import own_weight
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
+from sk120stiff.identify.solve.covariance import posterior
 from sk120stiff.identify.written import leaving_out
 from sk120stiff.model import Model, Parameter
 
@@ -68,18 +68,6 @@ def moved_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
     spread, ways = np.linalg.eigh(more_unsure)
     half = size[:, None] * ways * np.sqrt(np.maximum(spread, 0.0))  # rounding is no variance
     return np.asarray(np.outer(step, step) + half @ half.T)
-
-
-def posterior(jacobian: Array, prior: Array, left: Array) -> tuple[Array, Array]:
-    """(P,) step to the best values, and covariance, of derivative (M, P), prior (P,) and gap (M,).
-
-    The prior's own pull counts in neither: two steps are compared. Of what the numbers cannot see
-    neither says anything.
-    """
-    information = jacobian.T @ jacobian + np.diag(prior)
-    size = np.sqrt(np.diag(information))
-    inverse = linalg.pinvh(information / np.outer(size, size)) / np.outer(size, size)
-    return np.asarray(inverse @ (jacobian.T @ left)), np.asarray(inverse)
 
 
 def _with_left_out(model: Model, catalogue: Catalogue) -> tuple[Model, dict[int, float]]:

@@ -24,7 +24,6 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter
 from sk120stiff.robot import Robot
 
-FAINT = 1e-9  # share of a column left beside the base below which it is rounding
 WIDE = 40  # virtual joints in one mechanism: memory and time go with its square
 _SHOWN_BY_WEIGHT = (LinearElastic, LostMotion, GearHardening)
 _ONLY_LOADED = ("zero_offset", "link_length")
@@ -76,15 +75,6 @@ def slopes(problem: PoseProblem, model: Model, effects: Sequence[Effect]) -> dic
         for effect, a, b in zip(part, ends[:-1], ends[1:], strict=True):
             found[effect] = slope[:, a:b]
     return found
-
-
-def beside(Q: Array, block: Array) -> Array:
-    """(M, p) what orthonormal columns do not make up of others; zero where that is rounding."""
-    before = np.linalg.norm(block, axis=0)
-    for _ in range(2):
-        block = block - Q @ (Q.T @ block)
-    block[:, np.linalg.norm(block, axis=0) <= FAINT * before] = 0.0
-    return block
 
 
 def _parts(effects: Sequence[Effect], robot: Robot) -> Iterator[list[Effect]]:

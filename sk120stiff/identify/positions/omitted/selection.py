@@ -15,11 +15,11 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask, lengths_of
 from sk120stiff.effects import Catalogue, Effect, LoadError, referred
-from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.noise.sizes import of_poses
 from sk120stiff.identify.positions.omitted.nuisances import COUNTED
-from sk120stiff.identify.positions.omitted.other_causes import beside, causes_at, slopes
+from sk120stiff.identify.positions.omitted.other_causes import causes_at, slopes
 
 CLEAR = 6.0  # by which the BIC must fall
 MOST = 12  # causes that are looked at beside one another

@@ -14,8 +14,8 @@ import numpy as np
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue
 from sk120stiff.identify.positions.calibrate import Calibration
-from sk120stiff.identify.positions.omitted.nuisances import posterior
 from sk120stiff.identify.positions.omitted.selection import CLEAR, Blocks
+from sk120stiff.identify.solve.covariance import posterior
 from sk120stiff.identify.written import with_values
 
 
