@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sk120stiff import base_model, load_robot
+from sk120stiff import base_model, load_robot, predict
 from sk120stiff.effects.reading_drift import ReadingDrift, warm_ups
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.answer.words import set_aside_sentences
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import Options, candidates_for
 from sk120stiff.explain.select.outliers import LIMIT, NEXT, outlying_rows
@@ -60,6 +61,11 @@ def test_a_reading_that_the_named_model_holds_counts_again(monkeypatch: pytest.M
     answer = answered(model, off(hidden(), [17], 40 * SIGMA), options=Options(only=("joint_tilt",)))
     assert answer.set_aside == (17,)
     assert answer.final.problem.measurements.n_readings == answer.readings.n_readings - 1
+    told = predict(answer.final.model, answer.readings).gap(answer.readings)
+    assert answer.rms_of_all == pytest.approx(np.sqrt(np.mean(told**2)), rel=1e-9)
+    assert answer.rms_of_all > 2.0 * answer.final.rms
+    said = set_aside_sentences(answer)
+    assert len(said) == 2 and f"leaves {1e6 * answer.rms_of_all:.1f} µm" in said[1]
 
 
 @pytest.mark.parametrize("seed", [7, 8, 9])

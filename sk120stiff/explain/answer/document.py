@@ -52,6 +52,7 @@ def verdict_document(
             "unit": "um",
             "noise_floor": micrometres(answer.noise_floor),
             "p": answer.adequacy.chance,
+            "rms_of_all": micrometres(answer.rms_of_all),
             "steps": [step_entry(step) for step in answer.steps],
             "borne_out": borne_out_document(answer.borne_out),
         },

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks import slips_of_rows
@@ -17,7 +19,7 @@ from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.borne_out import BorneOut
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
-from sk120stiff.identify import Fit, Yardstick, known_together, yardstick
+from sk120stiff.identify import Fit, Yardstick, as_seen, known_together, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Share
 from sk120stiff.model.predicted import predict_what_holds
@@ -134,6 +136,16 @@ class Explanation:
         except ToolkitError:
             return {}
         return slips_of_rows(self.readings, self.set_aside, told.displacement, limit)
+
+    @cached_property
+    def rms_of_all(self) -> float:
+        """Gap of the final model over all readings in use, those set aside among them [m]."""
+        if not self.set_aside:
+            return self.final.rms
+        problem = self.final.problem
+        used = as_seen(self.final.model.robot, self.readings).masked()
+        gap = replace(problem, measurements=used, weights=None).gap(self.final.x)
+        return float(np.sqrt(np.nanmean(gap**2)))
 
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.

@@ -99,9 +99,20 @@ def _of_single_poses(answer: Explanation) -> float:
 
 
 def set_aside_sentences(answer: Explanation) -> tuple[str, ...]:
-    """One for every reading that was set aside, with the slip that would explain it."""
-    return tuple(
+    """One for every reading that was set aside, with the slip that would explain it, and a last."""
+    if not answer.set_aside:
+        return ()
+    each = (
         f"Set aside as no smooth cause can have made it: {place_of(answer.readings, row)}"
         + (f"; {answer.slips[row]}." if row in answer.slips else ".")
         for row in answer.set_aside
+    )
+    return *each, with_set_aside(answer)
+
+
+def with_set_aside(answer: Explanation) -> str:
+    """What the model leaves of the readings in use, with those set aside and without."""
+    return (
+        f"With what was set aside the model leaves {microns(answer.rms_of_all)} rms per axis, as "
+        f"'sk120stiff predict' counts it, without {microns(answer.final.rms)}."
     )

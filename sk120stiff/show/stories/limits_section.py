@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.data_checks import place_of
 from sk120stiff.effects import all_effects
 from sk120stiff.explain import Detectable, Explanation
-from sk120stiff.explain.answer.words import noise_words
+from sk120stiff.explain.answer.words import noise_words, with_set_aside
 from sk120stiff.explain.findings import ENOUGH
 from sk120stiff.identify.report import noise_sentence
 from sk120stiff.measurements import Measurements
@@ -57,7 +57,7 @@ def _set_aside(answer: Explanation, readings: Measurements) -> Note:
     return Note(
         f"{counted(len(told), 'reading')} of {readings.use.sum()} no smooth cause can have made, "
         f"and no fit used: {'; '.join(told)}. Look for a disturbed reading or a slip of the pen. "
-        "Nothing was deleted.",
+        f"Nothing was deleted. {with_set_aside(answer)}",
         "caution",
         "Set aside",
     )
