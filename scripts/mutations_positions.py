@@ -177,7 +177,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "identify/positions/checks/slips.py", *tests("positions/checks", "joint_slips"),
-        a_slip_where_a_label_says_there_is_none=("or problem.said.series is None)", "or True)"),
+        a_slip_where_a_label_says_there_is_none=("for each in (best, *rivals) if each.cause in unsaid)", "for each in (best, *rivals))"),
         a_law_of_the_joint_taken_for_a_slip=("<= CLEARER * steps.by_places", "<= 0.0"),
     ),
     *of(
@@ -185,6 +185,15 @@ OF_POSITIONS: tuple[Fault, ...] = (
         stairs_of_a_drift_taken_for_slips=("courses if len(cuts) > 1 else", "courses if len(cuts) > 9 else"),
         the_joint_that_takes_off_least=("int(np.argmax([replace", "int(np.argmin([replace"),
         sizes_of_what_does_not_slip=("[-len(cuts) * self.frame.shape[1] :]", "[: len(cuts) * self.frame.shape[1]]"),
+    ),
+    *of(
+        "identify/positions/checks/slips.py", *tests("positions/checks", "rivals"),
+        a_jump_taken_for_what_poses_have_of_their_own=("    if problem.common:\n", "    if problem.common > 9.0:\n"),
+    ),
+    *of(
+        "identify/positions/checks/likeliest.py", *tests("positions/checks", "rivals"),
+        the_richest_cause_taken_for_the_likeliest=("halvings = times + (self.cause != simpler.cause)", "halvings = -9"),
+        rivals_with_any_number_of_moves_and_any_gap=("or not fewer or behind > BEYOND_DOUBT", "or False"),
     ),
     *of(
         "identify/positions/checks/change_points.py", *tests("positions/checks", "slips"),

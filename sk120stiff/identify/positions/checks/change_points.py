@@ -23,6 +23,7 @@ HALF = 0.5  # of the square of what is left, below which a push must bring it
 BEYOND_DOUBT = 10.0  # logarithm of the odds for it, after what so many rows and numbers cost
 SIDE = 6  # rows at least before and after it
 SPLITS = 400  # rows between which it is looked for first
+ELSEWHERE = 40  # rows at which it is looked for what a change at any row takes off
 MOST = 4  # pushes of one campaign
 ENOUGH = 4  # times as many numbers to spare as a push would take up: fewer are fitted by anything
 WORTH = 0.05  # of the gap: a push that takes off less is not spoken of
@@ -77,15 +78,20 @@ class Steps:
     @cached_property
     def found(self) -> Change:
         """Where a place changed, wild readings left out: see `among`."""
+        return self.kept.among()
+
+    @cached_property
+    def kept(self) -> Steps:
+        """The same without wild readings."""
         wild = self._wild
         if not wild.any():
-            return self.among()
+            return self
         kept = ~wild
         return replace(
             self, columns=self.columns[kept], gap=self.gap[kept], frame=self.frame[kept],
             when=self.when[kept], joints=self.joints[kept],
             pose=np.unique(self.pose[kept], return_inverse=True)[1], creeps=self.creeps[kept],
-        ).among()  # fmt: skip
+        )  # fmt: skip
 
     @property
     def _wild(self) -> Mask:
@@ -109,21 +115,36 @@ class Steps:
             cuts = sorted([*cuts, cut])
         while cuts:  # the first ones may stand between others
             less = {cut: [c for c in cuts if c != cut] for cut in cuts}
-            weakest = min(cuts, key=lambda cut: self._left(less[cut]))
-            if self._odds(self._left(less[weakest]), self._left(cuts)) > BEYOND_DOUBT:
+            weakest = min(cuts, key=lambda cut: self.left(less[cut]))
+            if self._odds(self.left(less[weakest]), self.left(cuts)) > BEYOND_DOUBT:
                 break
             cuts = less[weakest]
-        if not cuts:
-            return Change()
-        cuts = [self._nearest(cuts, k) for k in range(len(cuts))]
-        if min(np.diff(cuts), default=SIDE) < SIDE:
-            return Change()  # a wild row or a few, not a place
-        before, after = self._left([]), self._left(cuts)
+        return self.judged([self._nearest(cuts, k) for k in range(len(cuts))])
+
+    def fewer(self, change: Change) -> list[Change]:
+        """The same changes, and those that count with the weakest of them left out."""
+        out, cuts = [change], list(change.cuts)
+        while len(cuts) > 1:
+            less = [[c for c in cuts if c != cut] for cut in cuts]
+            cuts = min(less, key=self.left)
+            out.append(self.judged([self._nearest(cuts, k) for k in range(len(cuts))]))
+        return [each for each in out if each.cuts]
+
+    def once(self) -> Change:
+        """The one change that takes off most, and what it brings."""
+        cut = self.largest(self._beside([]), [])[1]
+        return self.judged([cut]) if cut > 0 else Change()
+
+    def judged(self, cuts: list[int]) -> Change:
+        """What these changes bring; none where that is too little, see `among`."""
+        if not cuts or min(np.diff(cuts), default=SIDE) < SIDE:
+            return Change()  # nothing, or a wild row or a few: not a place
+        before, after = self.left([]), self.left(cuts)
         share = float(np.sqrt(after / before))
         odds = self._odds(before, after, len(cuts))
         fading = [np.exp(-self.time / course) for course in (BRIEF, *COURSES)]
-        courses = self._left([], creeping=[self.time, *fading])
-        steady = courses if len(cuts) > 1 else self._left([], creeping=[self.time])
+        courses = self.left([], creeping=[self.time, *fading])
+        steady = courses if len(cuts) > 1 else self.left([], creeping=[self.time])
         if after <= HALF * min(before, steady):
             return Change(tuple(cuts), share, True, odds, before - after)
         told = share < 1.0 - WORTH and self._odds(courses, after) > STURDY * BEYOND_DOUBT
@@ -139,10 +160,10 @@ class Steps:
             return Change()
         while cuts and not self._each_counts(cuts):
             less = {cut: [c for c in cuts if c != cut] for cut in cuts}
-            cuts = min(less.values(), key=self._left)
+            cuts = min(less.values(), key=self.left)
         if not cuts:
             return Change()
-        before, after = self._left([]), self._left(cuts)
+        before, after = self.left([]), self.left(cuts)
         share = float(np.sqrt(after / before))
         if share > TAKEN:
             return Change()
@@ -151,8 +172,8 @@ class Steps:
 
     def _each_counts(self, cuts: list[int]) -> bool:
         """Does each of these changes bring more than is in doubt beside the others?"""
-        whole = self._left(cuts)
-        rest = (self._left([c for c in cuts if c != cut]) for cut in cuts)
+        whole = self.left(cuts)
+        rest = (self.left([c for c in cuts if c != cut]) for cut in cuts)
         return all(self._odds(left, whole) > BEYOND_DOUBT for left in rest)
 
     @cached_property
@@ -170,6 +191,21 @@ class Steps:
         fitted = self._beside(list(cuts))
         last = fitted.solution()[-len(cuts) * self.frame.shape[1] :]
         return np.asarray(last.reshape(len(cuts), -1))
+
+    def error_of_number(self, cuts: Sequence[int]) -> float:
+        """Square that one number more takes off beside these changes, where nothing happened.
+
+        What noise leaves of each, or what an error of the model does at other rows, if that is
+        more: numbers of a change fit it as well as those of any other row.
+        """
+        known, end = self._beside(list(cuts)), int(self.when.max()) + 1
+        freedom = float(self.freedom) - len(cuts) * self.frame.shape[1]
+        noise = float(known.square / max(freedom, 1.0))
+        if end <= 2 * SIDE:
+            return noise
+        ways = np.unique(np.linspace(SIDE, end - SIDE, ELSEWHERE).astype(np.intp))
+        usual = float(np.median(self._gains(known, ways, end)))
+        return float(max(noise, usual / self.frame.shape[1]))
 
     def of_most(self, frames: Sequence[Array]) -> int:
         """Which of several (M, f) columns takes off most by one change."""
@@ -217,14 +253,15 @@ class Steps:
         left = self.gap - A @ x
         return Fitted(A, H, left, max(float(self.gap @ left), 1e-300), x, size)
 
-    def _left(self, cuts: list[int], *, creeping: Sequence[Array] = ()) -> float:
+    def left(self, cuts: list[int], *, creeping: Sequence[Array] = ()) -> float:
+        """Square that is left beside these changes and courses of time."""
         return self._beside(cuts, creeping=creeping).square
 
     def _nearest(self, cuts: list[int], k: int) -> int:
         """The best time near one of them, with the others as they are."""
         others = [cut for cut in cuts if cut != cuts[k]]
         near = range(max(cuts[k] - SIDE, 1), min(cuts[k] + SIDE, int(self.when.max())) + 1)
-        return min(near, key=lambda cut: self._left(sorted([*others, cut])))
+        return min(near, key=lambda cut: self.left(sorted([*others, cut])))
 
     def _next(self, cuts: list[int]) -> int | None:
         """The change that takes off most beside those that are known, if it is beyond doubt."""

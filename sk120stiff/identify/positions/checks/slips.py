@@ -3,45 +3,37 @@
 From every row on another place of each is tried beside all that the model has
 (`change_points.py`). It counts where the square of what is left halves: no smooth error of a model
 does that at one row, since poses before and behind it are alike. What creeps from row to row
-instead is no push.
+instead is no push. Of several that do so `likeliest.py` takes one, and names the others.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
-from sk120stiff.errors import InputError, listed, two_digits
+from sk120stiff.errors import InputError
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.checks.change_points import CLEARER, Change, Steps
+from sk120stiff.identify.positions.checks.likeliest import (
+    Cause,
+    Suspect,
+    likeliest,
+    rivals_of,
+    variants,
+)
+from sk120stiff.identify.positions.checks.slips_in_words import looks_of, remedy_of
 from sk120stiff.identify.positions.residuals.pure_error import cells_of_numbers
+from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 
-
-@dataclass(frozen=True, eq=False)
-class _Cause:
-    """What was moved.
-
-    Attributes:
-        what: It.
-        column: The column that tells when.
-        own: What each of its labels has.
-        joint: Which actuated joint slipped; None: none did.
-    """
-
-    what: str
-    column: str
-    own: str
-    joint: int | None = None
-
-
-PUSHED = _Cause("the tracker", "station", "a frame of its own")
-SLIPPED = _Cause("the marker", "series", "a place of its own on the tool")
+PUSHED = Cause("the tracker", "station", "a frame of its own")
+SLIPPED = Cause("the marker", "series", "a place of its own on the tool")
 
 
 def refuse_pushed(
@@ -63,91 +55,98 @@ def refuse_pushed(
     problem = found.problem
     if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
         return ()
+    told = {"station": problem.said.stations, "series": problem.said.series}
+    suspects = list[Suspect]()
+    for white in weighings(problem):
+        here = _suspects(found, problem, white, others, prior)
+        suspects = suspects or here
+        if any(each.change.sure for each in here):
+            suspects = here
+            break
+    if not suspects:
+        return ()
+    unsaid = {each.cause for each in suspects if told[each.cause.column] is None}
+    sure = {each.cause for each in suspects if each.change.sure and each.cause in unsaid}
+    best = likeliest([each for each in suspects if not sure or each.cause in unsaid])
+    rivals = rivals_of(best, suspects)
+    when = _when(problem.measurements)
+    looks = looks_of(problem, when, best, rivals)
+    remedy = remedy_of(problem, when, best, rivals, [*unsaid])
+    if any(each.change.sure for each in (best, *rivals) if each.cause in unsaid):
+        raise InputError(looks, where=readings.place, remedy=remedy)
+    return (f"{looks[0].upper()}{looks[1:]}. {remedy}",)
+
+
+def weighings(problem: PoseProblem) -> Iterator[PoseWhitening]:
+    """How numbers may count: each for itself, then those of a pose with what they share.
+
+    What moved between rows moves all readings of a pose alike, and would be taken for what poses
+    have of their own, were that held against it first.
+    """
+    if problem.common:
+        yield PoseWhitening(problem.of_channels.sigma)
+    yield problem.of_channels
+
+
+def weighed(
+    problem: PoseProblem, white: PoseWhitening, found: Fit, others: Array, prior: Array
+) -> tuple[Array, Array, Array]:
+    """What is left (M,), columns (M, P) and prior (P,) as another weighing has them."""
+    if white is problem.of_channels:
+        return found.residual, others, prior
+    undo = problem.of_channels.undo
+    left = white.apply(undo(found.residual))
+    wider = float(left @ left) / max(float(found.residual @ found.residual), 1e-300)
+    return left, white.apply(undo(others)), prior * wider
+
+
+def _suspects(
+    found: Fit, problem: PoseProblem, white: PoseWhitening, others: Array, prior: Array
+) -> list[Suspect]:
+    """All that may have moved, where it takes off enough, each at the times that were found."""
     when, a = _when(problem.measurements), problem.measurements.joints
     frames = {
         PUSHED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, Viewpoint)],
         SLIPPED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)],
     }
-    pose = cells_of_numbers(problem, problem.measurements.pose_index[:, None])
     told = {PUSHED: problem.said.stations, SLIPPED: problem.said.series}
-    away = found.jacobian[:, [k for columns in frames.values() for k in columns]]
-    nothing = Steps(
-        others, prior, found.residual, away, when[problem.rows], a[problem.rows], pose, away
-    )
-    steps = _of_joints(problem, nothing)
+    pose = cells_of_numbers(problem, problem.measurements.pose_index[:, None])
+    raw = problem.of_channels.undo(found.jacobian)
+    away = white.apply(raw[:, [k for columns in frames.values() for k in columns]])
+    left, others, prior = weighed(problem, white, found, others, prior)
+    nothing = Steps(others, prior, left, away, when[problem.rows], a[problem.rows], pose, away)
+    suspects = list[Suspect]()
     for cause, columns in frames.items():
         if columns and told[cause] is None:
-            own = found.jacobian[:, columns]
-            steps[cause] = replace(nothing, frame=own, creeps=own)
-    tried = {cause: own.found for cause, own in steps.items()}
-    cause = max(tried, key=lambda each: tried[each].odds, default=PUSHED)
-    change = tried.get(cause, Change())
-    if not change.cuts:
-        return ()
-    order, line = np.argsort(when), problem.measurements.line
-    between = [f"{line[order[k - 1]]} and {line[order[k]]}" for k in change.cuts]
-    share = f"the gap falls to {two_digits(100.0 * change.share)} % of what all else leaves"
-    if cause.joint is not None:
-        sizes = steps[cause].sizes(change.cuts)[:, 0]
-        looks, remedy = _slipped_joint(problem, cause, sizes, between, share)
-    else:
-        looks = (
-            f"{cause.what} looks moved between lines {listed(between)}: with another place from "
-            f"there on {share}"
-        )
-        remedy = (
-            f"Add a column {cause.column} with a label for each time between, as a and b: each has "
-            f"{cause.own} then, and the arm is one. Or one label for all, if nothing was moved."
-        )
-    if change.sure and (cause.joint is None or problem.said.series is None):
-        raise InputError(looks, where=readings.place, remedy=remedy)
-    return (f"{looks[0].upper()}{looks[1:]}. {remedy}",)
+            own = white.apply(raw[:, columns])
+            suspects += variants(cause, replace(nothing, frame=own, creeps=own), raw[:, columns])
+    moved = any(each.change.sure for each in suspects)
+    return suspects + _of_joints(problem, white, nothing, moved)
 
 
-def _of_joints(problem: PoseProblem, nothing: Steps) -> dict[_Cause, Steps]:
+def _of_joints(
+    problem: PoseProblem, white: PoseWhitening, nothing: Steps, moved: bool
+) -> list[Suspect]:
     """The joint that stands off from some row on, if any does: the likeliest of all.
 
     What creeps may be the tracker or the marker as well. A law of the joint, play say, makes it
     stand off alike beyond a border in its values, which a sorted plan crosses at one row.
+
+    Args:
+        problem, white, nothing: What was read.
+        moved: Something moved at one row beyond doubt, be it this joint or not.
     """
     if "position" not in problem.channels.present:
-        return {}
-    columns = problem.of_channels.apply(problem.by_joints)
-    joints = [column[:, None] for column in columns.T]
+        return []
+    joints = [white.apply(column)[:, None] for column in problem.by_joints.T]
     k = nothing.of_most(joints)
     steps = replace(nothing, frame=joints[k], creeps=np.hstack([nothing.creeps, joints[k]]))
-    if steps.found.fall <= CLEARER * steps.by_places:
-        return {}
-    return {_Cause(problem.model.robot.actuated[k], "series", "", k): steps}
-
-
-def _slipped_joint(
-    problem: PoseProblem, cause: _Cause, sizes: Array, between: list[str], share: str
-) -> tuple[str, str]:
-    """What a joint that slipped looks like, and what mends it."""
-    robot, k = problem.model.robot, cause.joint or 0
-    slides = robot.prismatic[k]
-    by = [f"{1e3 * size:+.3g} {'mm' if slides else 'mrad'}" for size in sizes]
-    add = [f"{1e3 * v:+.3g} mm" if slides else f"{np.degrees(v):+.3g} deg" for v in sizes]
-    since = [
-        f"{one} to all that were read from line {lines.split()[-1]} on"
-        for one, lines in zip(add, between, strict=True)
-    ]
-    looks = (
-        f"{cause.what} looks slipped by {listed(by)} between lines {listed(between)}: with another "
-        f"zero from there on {share}"
-    )
-    ends = {
-        0: "the tracker or the base turned about its axis",
-        robot.n - 1: "the tool turned on it",
-    }
-    also = f" Or {ends[k]} by as much." if k in ends and not slides else ""
-    return looks, (
-        f"Look for what slipped there (a clamp, a belt, a coupling, a lost mastering).{also} If it "
-        f"did, add to values of {cause.what} {listed(since)}; or leave out (column use: 0) what "
-        "was read before it, or after it. Or write a column series with one label for all, if "
-        "nothing slipped."
-    )
+    if steps.found.fall <= CLEARER * steps.by_places and not moved:
+        return []
+    cause = Cause(problem.model.robot.actuated[k], "series", "", k)
+    found = variants(cause, steps, problem.by_joints[:, [k]])
+    once = steps.kept.once() if moved and not found else Change()
+    return [Suspect(cause, steps, once, problem.by_joints[:, [k]])] if once.cuts else found
 
 
 def _when(readings: Measurements) -> Index:

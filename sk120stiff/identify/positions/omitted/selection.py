@@ -89,8 +89,14 @@ class Blocks:
         Args:
             unit: What is left, which the variances are in units of.
         """
-        loads = [k for k, cause in enumerate(self.causes) if isinstance(cause, LoadError)]
-        whole = [self.whole[k] for k in loads]
+        return self._with(unit, [isinstance(cause, LoadError) for cause in self.causes])
+
+    def beside_all(self, unit: float) -> tuple[Array, Array]:
+        """The same of estimates and of all causes that may be at work."""
+        return self._with(unit, [True] * len(self.causes))
+
+    def _with(self, unit: float, wanted: Sequence[bool]) -> tuple[Array, Array]:
+        whole = [each for each, own in zip(self.whole, wanted, strict=True) if own]
         prior = [np.zeros(self.base.shape[1])]
         prior += [np.full(each.shape[1], unit**2) for each in whole]
         return np.hstack([self.base, *whole]), np.concatenate(prior)
