@@ -110,9 +110,10 @@ def explain(
     if measurements.absolute is not None:
         if measurements.absolute.channels.displacement is not None:
             refuse_slips(model, measurements)
-        return explain_positions(
-            model, measurements, holdout=holdout, options=options, progress=progress
-        )
+        single, told = without_copies(measurements)
+        if told:
+            warnings.warn(told, ToolkitWarning, stacklevel=3)
+        return explain_positions(model, single, holdout=holdout, options=options, progress=progress)
     return explain_displacements(
         model, measurements, holdout=holdout, options=options, progress=progress
     )

@@ -15,6 +15,7 @@ from sk120stiff.measurements.placing.cloud import FEWEST, Cloud
 from sk120stiff.measurements.placing.distances import place_distances
 from sk120stiff.measurements.placing.registration import Registration
 from sk120stiff.measurements.placing.slips import (
+    ONE_COLUMN,
     Convention,
     markers,
     moved_at,
@@ -25,6 +26,7 @@ from sk120stiff.measurements.placing.slips import (
     to_the_floor,
     with_sums,
 )
+from sk120stiff.measurements.placing.untold import with_told_place
 from sk120stiff.measurements.placing.upside_down import OtherConvention, standing
 from sk120stiff.measurements.placing.zeros import small_zeros
 from sk120stiff.robot import STANDARD_GRAVITY, Robot
@@ -130,6 +132,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
                 raise InputError("t" + told, where=str(readings.path or ""), remedy=remedy)
             notes.append(f"T{told}. {remedy}")
         found, kept = stated, at
+    found, notes[len(notes) :] = with_told_place(cloud, found, kept)
     if said.frame == "base":
         _refuse_other_axes(found, cloud, spread, readings)
     if found.rms < COMPUTED:
@@ -140,10 +143,8 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
         )
     if said.frame == "unknown" and len(stations) == 1:
         notes += _say_if_it_hangs(cloud, readings)
-    distance = np.full(readings.n_readings, np.nan)
-    distance[whole] = cloud.left(found)
-    wild = np.zeros(readings.n_readings, dtype=bool)
-    wild[whole[~kept]] = True
+    distance, wild = np.full(readings.n_readings, np.nan), np.zeros(readings.n_readings, dtype=bool)
+    distance[whole], wild[whole[~kept]] = cloud.left(found), True
     if len(lost) and not np.isin(lost, whole).any():
         wild[lost] = True
         lines = listed([str(readings.line[row]) for row in lost])
@@ -241,13 +242,13 @@ def _refuse_slips(
     told = _left(found)
     few = cloud.some()
     base = few.placed(fit_marker=True)[0].rms
-    tried = min(slips(few, readings.joint_names), key=lambda item: item[0])
-    if tried[0] < BETTER * base:
-        _, rms, what, remedy = tried
-        raise InputError(
-            f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
-        )
     least = min(BETTER * base, FITS * spread)
+    explains, rms, what, remedy = min(slips(few, readings.joint_names), key=lambda item: item[0])
+    one = InputError(
+        f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
+    )
+    if explains < least:
+        raise one
     _refuse_moved(cloud, told, least, readings, rows)
     ways = [
         (signs_and_turns, "other zeros or signs of joints"),
@@ -256,19 +257,21 @@ def _refuse_slips(
     ]
     if found.rms > FITS * spread:  # what is less a fit finds, and says of it that it is an error
         ways.insert(0, (one_zero, "the zero of one joint elsewhere"))
-    for found_by, what in ways:
+    for found_by, other in ways:
         way = found_by(cloud.some(FEWER))
         if way.changed(readings.joint_names) and way.rms < least:
             stands = standing(cloud.some(FEWER), way, _gravity(cloud.robot, readings))
             way, written = stands.way, _as_written(readings)
             raise OtherConvention(
-                f"{told}. With {what} {1e3 * way.rms:.3g} mm are left",
+                f"{told}. With {other} {1e3 * way.rms:.3g} mm are left",
                 where=where,
                 remedy="Check the controller's convention. If it is so, write into the YAML file: "
                 f"{written(way)}; where a joint has an expression there already, put that in its "
                 f"place on the right.{stands.beside(written)}",
                 standing=stands,
             )
+    if explains < BETTER * base and not what.startswith(ONE_COLUMN):
+        raise one  # not all of it: a column alone in another unit would be
 
 
 def _gravity(robot: Robot, readings: Measurements) -> Array:
@@ -339,11 +342,8 @@ def _refuse_exchange(cloud: Cloud, found: Registration, readings: Measurements) 
     """Refuse names of markers whose exchange explains what one shift of all leaves."""
     tried = min(markers(cloud.some()), key=lambda item: item[0], default=None)
     if tried is not None and tried[0] < BETTER * found.rms:
-        _, rms, what, remedy = tried
-        where = readings.place
-        raise InputError(
-            f"{_left(found)}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
-        )
+        what = f"{_left(found)}. {tried[2]}: then {1e3 * tried[1]:.3g} mm are left"
+        raise InputError(what, where=readings.place, remedy=tried[3])
 
 
 def _left(found: Registration) -> str:

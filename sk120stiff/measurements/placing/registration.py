@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -29,6 +29,7 @@ class Registration:
             [rad], and of the shift [m], as far as what remains is independent noise; infinite where
             the positions do not tell the frame.
         apart: (G, 3) how much farther than the first each marker is off its stated place [m].
+        of_marker: (3, 3) covariance of the fitted marker, of the first of several [m²].
     """
 
     rms: float
@@ -42,6 +43,18 @@ class Registration:
     distance: Array
     covariances: Array
     apart: Array
+    of_marker: Array = field(default_factory=lambda: np.zeros((3, 3)))
+
+    def untold(self, limit: float) -> Array:
+        """(k, 3) unit directions of the tool frame along which the marker's place is not told.
+
+        Args:
+            limit: Standard error beyond which it is not [m].
+        """
+        if not self.marker_fitted or not np.isfinite(self.of_marker).all():
+            return np.zeros((0, 3))
+        variances, ways = np.linalg.eigh(self.of_marker)
+        return np.asarray(ways.T[variances > limit**2])
 
     @property
     def std(self) -> Array:
@@ -118,7 +131,19 @@ def registration_of(clouds: Clouds, found: Laid, kept: Mask) -> Registration:
         distance,
         _covariances(columns[:, : None if fitted else frames], frames, float(rms) ** 2 / 3.0),
         marker - marker[0],
+        _of_marker(columns, frames, float(rms) ** 2 / 3.0),
     )
+
+
+def _of_marker(columns: Array, frames: int, variance: float) -> Array:
+    """(3, 3) covariance of the first marker's place, frames and other markers fitted beside it."""
+    own, others = columns[:, frames : frames + 3], np.delete(columns, np.s_[frames : frames + 3], 1)
+    if not own.shape[1]:
+        return np.zeros((3, 3))
+    left = own - others @ np.linalg.lstsq(others, own, rcond=None)[0]
+    values, ways = np.linalg.eigh(left.T @ left)
+    floor = (_TOLD * np.linalg.norm(own, axis=0).max()) ** 2
+    return np.asarray(variance * (ways / np.maximum(values, floor)) @ ways.T)
 
 
 def _moved(turns: Array, shifts: Array, at: Array, station: Index) -> Array:

@@ -28,6 +28,7 @@ PARALLEL = 0.999  # cosine between the axes of joints that turn in one plane
 ZEROS = np.linspace(-np.pi, np.pi, 72, endpoint=False)  # rad; zeros of a joint tried first
 SAGGED = np.radians(0.25)  # rad from a quarter turn that sag makes of one
 FINE = 1e-5  # rad, to which one is found
+ONE_COLUMN = "The column of"
 TIMES = (1.0, -1.0, 2.0, -2.0)  # another joint's share in a sum, and in one of the wrong sign
 
 
@@ -50,7 +51,7 @@ def slips(cloud: Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, 
             a = cloud.a.copy()
             a[:, k] *= factor
             rms = left(a=a)
-            said = f"The column of {names[k]} looks like {was}"
+            said = f"{ONE_COLUMN} {names[k]} looks like {was}"
             yield rms, rms, said, f"Write [{unit}] in its header."
     for some, factor, meant, written in mixed(cloud.a, turning):
         if len(some) < 2:

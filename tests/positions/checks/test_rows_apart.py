@@ -67,3 +67,13 @@ def test_slips_are_found_beside_stations(tmp_path: Path) -> None:
     robot = sk.load_robot(path.with_name("six.urdf"), base="base", tool="tool")
     with pytest.raises(InputError, match="The columns of j2 and j3 look exchanged"):
         place(robot, sk.read(path).with_joints(NAMES))
+
+
+def test_a_column_of_something_else_is_no_joint_in_degrees(tmp_path: Path) -> None:
+    """Small numbers of anything bring a joint that hardly moves near: no arm is that far off."""
+    a = A.copy()
+    a[:, 1] *= 0.1
+    x = tracked(errors(4).stands(a)[0])
+    a[:, 1] = np.random.default_rng(1).uniform(-6.0, 6.0, COUNT)
+    error = refused(tmp_path, a, x)
+    assert "degrees" not in error.what

@@ -119,9 +119,9 @@ def command(
             warn(said)
     if readings.absolute is None:
         start = with_freedom(start, fix or (), free)
-        readings, told = without_copies(readings)
-        if told:
-            warn(told)
+    readings, told = without_copies(readings)
+    if told:
+        warn(told)
     with progress_bar("identify"):
         found = fit(start, readings, method=method.value, robust=robust, fix=fix or (), waves=waves)
     if isinstance(found, Calibration):

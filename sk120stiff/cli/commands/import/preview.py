@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from sk120stiff import units
 from sk120stiff.cli.tables import table
+from sk120stiff.data_checks import without_copies
 from sk120stiff.errors import listed
-from sk120stiff.measurements.importers import Column, Imported, Sheet, Told
-from sk120stiff.measurements.importers.columns.words import kind_of
+from sk120stiff.measurements.importers import Column, Imported, Sheet
+from sk120stiff.measurements.importers.columns.words import kind_of, unit_of_header
 from sk120stiff.measurements.importers.contract import Unpaired
 from sk120stiff.measurements.placing.registration import Registration
 from sk120stiff.robot import Robot
@@ -50,7 +52,7 @@ def document_of(found: Imported, out: Path | None, *, written: bool) -> dict[str
         "columns": [
             {"header": c.header, "meaning": c.meaning, "unit": unit or None, "stated": stated}
             for c in draft.sheet.columns
-            for unit, stated in (_unit(c, found.told),)
+            for unit, stated in (_unit(c, found),)
         ],
         "unused": list(draft.unused),
         "skipped": [
@@ -175,6 +177,8 @@ def identifiable(found: Imported) -> str:
 def doubts_of(found: Imported, robot: Robot) -> list[str]:
     """What speaks against the file being what it seems."""
     doubts = list(found.doubts)
+    if (copied := without_copies(found.readings)[1]) is not None:
+        doubts.append(copied.replace("masked here", "masked by 'identify' and 'explain'"))
     if found.fitted is not None and found.fitted.rms > MISCALIBRATED * arm_length(robot):
         doubts.append(
             f"{_against(found, robot)} A robot of this make is nearer: check signs and zeros of "
@@ -188,7 +192,7 @@ def preview_of(found: Imported, robot: Robot) -> list[object]:
     draft = found.draft
     sheet = draft.sheet
     parts: list[object] = [f"{sheet.path.name}: {sheet.title} ({sheet.why})."]
-    shown = [(c.header, c.meaning, *_unit(c, found.told)) for c in sheet.columns]
+    shown = [(c.header, c.meaning, *_unit(c, found)) for c in sheet.columns]
     parts.append(table("Columns", ["column", "is", "unit", "stated in"], shown))
     parts.append(f"{len(draft.pose)} rows at {len(set(draft.pose))} poses.")
     if sheet.skipped or sheet.unpaired:
@@ -211,10 +215,15 @@ def preview_of(found: Imported, robot: Robot) -> list[object]:
     return parts
 
 
-def _unit(column: Column, told: Told) -> tuple[str, str]:
-    """Unit of a column, and where it is stated."""
+def _unit(column: Column, found: Imported) -> tuple[str, str]:
+    """Unit of a column, and where it is stated: of a joint that slides that of lengths."""
     if column.unit is not None:
         return column.unit, column.stated
+    told, joints = found.told, found.draft.joints
+    for own, (header, _) in zip(joints.taken, joints.written, strict=True):
+        if own == column:
+            written = unit_of_header(header)[1] or ""
+            return written, "--angle" if written in units.KINDS["angle"][1] else "--length"
     kind = kind_of(column.meaning)
     unit = told.of(kind) if kind else None
     option = {"length": "--length", "angle": "--angle", "force": "--load"}.get(kind or "")

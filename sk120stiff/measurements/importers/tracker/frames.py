@@ -20,6 +20,7 @@ from sk120stiff.measurements.placing.cloud import FEWEST, Cloud
 from sk120stiff.measurements.placing.placing import FITS, place
 from sk120stiff.measurements.placing.registration import Registration, register
 from sk120stiff.measurements.placing.slips import Convention
+from sk120stiff.measurements.placing.untold import with_told_place
 from sk120stiff.measurements.placing.upside_down import OtherConvention
 from sk120stiff.robot import Robot
 from sk120stiff.robot.rotations import rotation_vector
@@ -83,10 +84,11 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             doubts=("Fewer than three poses: whether they are this robot's was not checked.",),
         )
     kept = rows[~placing.wild]
-    screws = robot.screws(draft.joints.values[kept])
-    markers = np.unique(np.array(draft.mounts)[kept], return_inverse=True)[1]
+    joints, names = draft.joints.values[kept], np.array(draft.mounts)[kept]
+    screws = robot.screws(joints)
+    markers = np.unique(names, return_inverse=True)[1]
     stood = stood_of(draft)[kept]
-    places = np.column_stack([draft.joints.values[kept], markers, stood])
+    places = np.column_stack([joints, markers, stood])
     again = len(kept) / len(np.unique(places, axis=0))  # what was read again errs alike
 
     def fit(x: Array) -> Registration | None:
@@ -96,7 +98,11 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             fit_marker=not known, group=np.zeros_like(markers) if known else markers,
             station=stood,
         )  # fmt: skip
-        return found and dataclasses.replace(found, covariances=found.covariances * again)
+        if found is None:
+            return None
+        cloud = Cloud(robot, joints, x[kept], point[kept], names, markers, stood)
+        found = with_told_place(cloud, found, np.ones(len(kept), dtype=bool))[0]
+        return dataclasses.replace(found, covariances=found.covariances * again)
 
     fitted = fit(draft.measured)
     other = None if draft.reversed is None else fit(draft.reversed)
