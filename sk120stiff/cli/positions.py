@@ -12,6 +12,7 @@ from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.values import value_lines
 from sk120stiff.effects import LinearElastic
+from sk120stiff.errors import listed
 from sk120stiff.explain import Explained
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.findings import likely, sentence_in
@@ -62,10 +63,13 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             f"{sentence_in(answer.final.model, item.effect)} [{item.effect.id}] "
             f"({answer.chance_of(item)}, {answer.taken_off(item)})"
         )
-        for other in item.alternatives:
+        worth, faint = answer.rivals_of(item)
+        for other in worth:
             share = likely(answer.probabilities.get(other, 0.0))
             one = other in item.exact and other not in item.untold  # of one class nothing tells it
             shown.append(f"  or {other} ({item.kind_of(other)}{'' if one else f'; {share}'})")
+        if faint:
+            shown.append(f"  or, each with {likely(0.0)} here: {listed(faint, 'or')}")
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
     shown += answer.shares()

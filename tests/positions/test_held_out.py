@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.cli.positions import _parts
 from sk120stiff.explain.positions.answer.explained import Explained
+from sk120stiff.explain.positions.answer.next_step import headline
 from sk120stiff.explain.positions.judge.accounts import numbers_told
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import calibrate
@@ -71,6 +73,26 @@ def test_cross_validated_numbers_leave_out_what_was_set_aside(answer: Explained)
     assert len(told) == len(seen.problem.counted) - 6
     first = np.flatnonzero(~seen.wild)
     assert not {0, 1} & set(first[seen.problem.rows[told]])
+
+
+def test_another_gap_fitted_exactly_than_step_by_step_is_told(answer: Explained) -> None:
+    last = replace(answer.steps[-1], fit_rms=1.2 * answer.final.rms)
+    said = replace(answer, steps=(*answer.steps[:-1], last)).not_counted()
+    assert len(said) == 2
+    assert f"fitted exactly the last model leaves {1e6 * answer.final.rms:.4g} µm" in said[1]
+
+
+def test_alternatives_that_are_hardly_likely_share_a_line(answer: Explained) -> None:
+    item = answer.findings[-1]
+    several = replace(item, alternatives=("a:1", "b:2", "c:3", "d:4"), exact=("d:4",))
+    odds = {**answer.probabilities, "a:1": 0.2, "b:2": 0.001, "d:4": 0.0}
+    found = replace(answer, verdict="ambiguous", findings=(several,), probabilities=odds)
+    assert found.rivals_of(several) == (["a:1", "d:4"], ["b:2", "c:3"])
+    assert f"{item.effect.id} or a:1 or d:4 or one of 2 that are hardly" in headline(found)
+    shown = [part for part in _parts(found, Path("out")) if isinstance(part, str)]
+    assert "  or, each with P < 0.01 here: b:2 or c:3" in shown
+    one = replace(several, alternatives=("a:1", "b:2"), exact=())
+    assert found.rivals_of(one) == (["a:1", "b:2"], [])
 
 
 def test_what_is_called_wild_took_no_part_in_the_fit(

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 EVEN = 0.5  # probability below which a name is not likely by itself
 SURE = 0.95  # probability of a name that is settled
+HARDLY = 0.01  # probability of an alternative below which it has no line of its own
+APART = 0.05  # share by which the gap to first order may be another than the exact one, untold
 
 
 @dataclass(frozen=True)
@@ -167,6 +169,17 @@ class Explained:
         own = likely(sum(self.probabilities.get(name, 0.0) for name in same))
         return f"{own}; it or one of those not told from it: {likely(item.probability)}"
 
+    def rivals_of(self, item: Named) -> tuple[list[str], list[str]]:
+        """Alternatives of a name that are worth a line each, and those that are hardly likely."""
+        faint = [
+            other
+            for other in item.alternatives
+            if other not in item.same and self.probabilities.get(other, 0.0) < HARDLY
+        ]
+        if len(faint) < 2:
+            faint = []
+        return [other for other in item.alternatives if other not in faint], faint
+
     def taken_off(self, item: Named, of: str = "") -> str:
         """What a name takes off the gap at poses left out, `of` behind it, in words."""
         hidden = unseen(self.final)
@@ -200,12 +213,19 @@ class Explained:
         )
 
     def not_counted(self) -> tuple[str, ...]:
-        """That rows which were set aside are in none of the gap's numbers, in a sentence."""
-        count = int(self.final.wild.sum())
-        if not count:
-            return ()
-        rows = "the row that was" if count == 1 else f"the {count} rows that were"
-        return (f"Fitted and held-out numbers leave out {rows} set aside.",)
+        """What the gap's numbers step by step leave out, or have otherwise, in sentences."""
+        said, count = list[str](), int(self.final.wild.sum())
+        if count:
+            rows = "the row that was" if count == 1 else f"the {count} rows that were"
+            said.append(f"Fitted and held-out numbers leave out {rows} set aside.")
+        fitted, exact = self.steps[-1].fit_rms, self.final.rms
+        if abs(fitted - exact) > APART * exact:
+            unit = self.final.problem.unit
+            said.append(
+                "Step by step the gap is told to first order, with values drawn towards what is "
+                f"plausible; fitted exactly the last model leaves {1e6 * exact:.4g} {unit}."
+            )
+        return tuple(said)
 
     def left_over(self) -> tuple[str, ...]:
         """What is left beyond the stated noise and where it lives, in sentences."""

@@ -10,7 +10,7 @@ from sk120stiff.explain.positions.answer.explained import EVEN, SURE
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
 
 if TYPE_CHECKING:
-    from sk120stiff.explain.positions.answer.explained import Explained
+    from sk120stiff.explain.positions.answer.explained import Explained, Named
 
 
 def headline(answer: Explained) -> str:
@@ -32,10 +32,7 @@ def headline(answer: Explained) -> str:
         if count == 1:
             return f"Something was missing, and its name is settled{more}."
         return f"{count} causes were missing, each by a name that is settled{more}."
-    told = "; ".join(
-        " or ".join((item.effect.id, *item.alternatives)) + f" ({likely(item.probability)})"
-        for item in open_ones
-    )
+    told = "; ".join(f"{_one_of(answer, item)} ({likely(item.probability)})" for item in open_ones)
     if count == 1:
         return f"Something was missing: its name is not settled{more}. Open: {told}."
     if max(item.probability for item in answer.findings) < EVEN:
@@ -50,6 +47,13 @@ def headline(answer: Explained) -> str:
         else (f"the names of {settled} are")
     )
     return f"{count} causes were missing: {named} settled{more}. Open: {told}."
+
+
+def _one_of(answer: Explained, item: Named) -> str:
+    """A name with its alternatives; those that are hardly likely are counted."""
+    worth, faint = answer.rivals_of(item)
+    more = [f"one of {len(faint)} that are hardly likely"] if faint else []
+    return " or ".join((item.effect.id, *worth, *more))
 
 
 def next_step_of_positions(answer: Explained) -> str:
