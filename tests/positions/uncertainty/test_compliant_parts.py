@@ -15,7 +15,7 @@ from sk120stiff.identify import known_model
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
 from sk120stiff.identify.positions.uncertainty.compliant_parts import beside_parts
 from sk120stiff.identify.positions.uncertainty.omitted_bias import beside_lacking
-from sk120stiff.identify.uncertainty.parts import as_one, half_normal
+from sk120stiff.identify.uncertainty.parts import as_one, half_normal, mostly_parts
 from tests.positions.arm import NAMES, Array, errors, poses, tracked, write
 from tests.positions.missing_cause import FIT, YIELDS
 
@@ -47,8 +47,8 @@ def test_a_spring_knows_of_a_base_that_may_yield(tmp_path: Path, seed: int, alon
     off = abs(after.internal - truth)
     assert off > alone * before.internal_std
     assert off < 2.0 * after.internal_std < 0.5 * after.internal
-    (said,) = [note for note in wide.notes if "part in brackets" in note]
-    assert "joint_springs:j2 (" in said
+    (said,) = mostly_parts(wide)
+    assert "part in brackets" in said and "joint_springs:j2 (" in said
     k = [p.name for p in wide.parameters].index(SPRING)
     low, high = wide.intervals()[k]
     assert low < 1.0 / truth < high

@@ -34,6 +34,7 @@ from sk120stiff.measurements import Measurements
 
 PUSHED = Cause("the tracker", "station", "a frame of its own")
 SLIPPED = Cause("the marker", "series", "a place of its own on the tool")
+ROUNDING = 1e-7  # m or rad; what no instrument reads, and no jump is told of
 
 
 def refuse_pushed(
@@ -54,6 +55,8 @@ def refuse_pushed(
     """
     problem = found.problem
     if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
+        return ()
+    if found.rms < ROUNDING:
         return ()
     told = {"station": problem.said.stations, "series": problem.said.series}
     suspects = list[Suspect]()
