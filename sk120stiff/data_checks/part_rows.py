@@ -26,7 +26,6 @@ THOUSAND = 1e3  # N of a kN, um of a mm, mm of a m
 TIMES = tuple(by for one in (KGF, LBF, INCH, THOUSAND) for by in (one, 1.0 / one))
 EDGES = 12  # stretches of a file between whose ends parts are tried before they are moved by rows
 LEAST = 3  # rows of a part: fewer are looked at one by one, once a model is fitted
-MINOR = 0.5  # share of the rows that may lie here and there
 WORTH = 9.0  # of the square left per number, by which a row here and there must fit better
 ROUNDS = 12  # of sorting rows here and there
 SETTLED = 5  # reweightings, after which rows far off hardly count
@@ -237,7 +236,7 @@ def _here_and_there(plain: _Numbers, other: _Numbers) -> _Tried | None:
                 break
             c = fitted
         few = min(int(inside.sum()), int((~inside).sum()))
-        if few < LEAST or few > MINOR * len(inside):
+        if few < LEAST:
             continue
         M = len(inside)
         chosen = gammaln(M + 1) - gammaln(few + 1) - gammaln(M - few + 1)

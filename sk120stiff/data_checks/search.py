@@ -125,7 +125,12 @@ def find_slip(robot: Robot, measurements: Measurements) -> Slip | None:
 
 
 def _in_a_part(start: Tried, measurements: Measurements, drives: int | None) -> Tried | None:
-    """Another unit or sign in a part of the rows; None where none is worth having looked for it."""
+    """Another unit or sign in a part of the rows; None where none is worth having looked for it.
+
+    Of single gauges along directions of their own it is not looked for: the words are of axes.
+    """
+    if measurements.directions is not None:
+        return None
     part = part_of_the_rows(start.sheet, drives)
     if part is None or part.found.left <= 0.0:
         return None

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.effects import CATALOGUE
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
@@ -84,13 +83,14 @@ def fit(
         refuse_other_forces(placed, readings)
         told = refuse_another_gravity(placed, readings)
         calibrated = calibrate(model, readings, freedom=fix, waves=waves)
-        blocks = Blocks.of(calibrated, CATALOGUE)
+        blocks = Blocks.of(calibrated, model.catalogue)
         every = blocks.beside_all(calibrated.unit)  # as `explain` does
         pushed = refuse_pushed(calibrated, readings, *every)
         loads = blocks.beside_loads(calibrated.unit)
         pushed = pushed or refuse_pushed(calibrated, readings, *loads)
         pushed = pushed or refuse_remounted(calibrated, readings, *loads)
-        found = beside_parts(beside_lacking(with_model_form(calibrated)), model.catalogue)
+        lacking = beside_lacking(with_model_form(calibrated), model.catalogue)
+        found = beside_parts(lacking, model.catalogue)
         by_row = pushed or creeping(found, readings)
         return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
     if not waves:
@@ -108,7 +108,7 @@ def fit(
 def gauges_as_displacements(model: Model, measurements: Measurements) -> Measurements:
     """What gauges alone read of one point, as the displacements that a model with springs is of.
 
-    Of a model in which nothing yields, and other readings, they come back as they are.
+    Of a model in which nothing is free, and other readings, they come back as they are.
 
     Raises:
         InputError: The forces seem meant in another way than stated.

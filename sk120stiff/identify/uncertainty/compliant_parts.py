@@ -26,8 +26,8 @@ ROUNDING = 1e-9  # of the largest singular value, below which columns tell nothi
 def beside_parts(found: Fit, catalogue: Catalogue, without: Collection[str] = ()) -> Fit:
     """The fit of displacements, its values uncertain by parts that may yield.
 
-    As `explain` has it before anything is read, one of all of them does: each is as likely as the
-    others, and what the readings show beyond doubt has a name.
+    Before anything is read one of all their K compliances is at work in the mean, as `explain` has
+    it: each has odds of 1 to K. What the readings show beyond doubt has a name.
 
     Args:
         found: The fit.

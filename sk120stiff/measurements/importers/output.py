@@ -257,7 +257,7 @@ def write_files(columns: Written, settings: dict[str, Any], out: Path) -> None:
     """Write the CSV file and the YAML file of the same stem.
 
     Raises:
-        InputError: As `measurements.writing.check_name`, or the folder cannot be written to.
+        InputError: As `measurements.files.writing.check_name`, or the folder cannot be written to.
     """
     check_name(out)
     keys = {**settings, "robot": robot_seen_from(settings["robot"], out.parent)}

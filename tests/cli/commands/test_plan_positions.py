@@ -42,9 +42,9 @@ def test_positions_are_planned_simulated_and_fitted(run, tmp_path: Path) -> None
     assert run("plan", "--check", plan).code == 0
     drawn = run("simulate", MODEL, plan, "--noise", "20 um", "--out", made)
     assert "axes are those of the base" in drawn.stdout
-    identified = {
-        each["name"]: each for each in run("identify", made, "--json").document["parameters"]
-    }
+    answer = run("identify", made, "--json").document
+    assert any("joint_springs:joint_3_u (" in said for said in answer["notes"])
+    identified = {each["name"]: each for each in answer["parameters"]}
     told = [e for e in found["expected"] if "joint_springs" in e["name"] and e["reason"] is None]
     assert told
     model = read_model(MODEL)

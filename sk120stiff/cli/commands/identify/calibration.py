@@ -21,6 +21,7 @@ from sk120stiff.identify.positions.words import (
     missing_sentences,
     unseen,
 )
+from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import write_model
 
@@ -57,7 +58,7 @@ def calibration_answer(
         "lacks": list(found.lacks),
         "remainder": remainder_entry(found),
         "noise": gap_sentence(found),
-        "notes": list(found.notes),
+        "notes": [*found.notes, *mostly_parts(found)],
         "iterations": found.iterations,
         "model": out,
     }

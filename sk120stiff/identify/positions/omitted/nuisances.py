@@ -52,7 +52,9 @@ def doubted(found: Fit, catalogue: Catalogue) -> Fit:
 
 
 def moved_by(more: Array, kept: Array, prior: Array, left: Array) -> Array:
-    """(P, P) covariance, and the move, that further parameters of unit size bring to others.
+    """(P, P) covariance of what further parameters of unit size bring to others.
+
+    The square of the move to the values beside them is in it.
 
     Args:
         more: (M, k) derivative by them.
