@@ -19,6 +19,7 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.report import fit_report
 from sk120stiff.identify.run import (
+    as_moved,
     fit,
     gauges_as_displacements,
     known_model,
@@ -39,6 +40,7 @@ __all__ = [
     "Learn",
     "Problem",
     "Yardstick",
+    "as_moved",
     "as_seen",
     "axes_of_joint_angles",
     "compare",

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sk120stiff.arrays import on_one_thread
+from sk120stiff.effects import Elastic
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
@@ -108,17 +109,23 @@ def fit(
 def gauges_as_displacements(model: Model, measurements: Measurements) -> Measurements:
     """What gauges alone read of one point, as the displacements that a model with springs is of.
 
-    Of a model in which nothing is free, and other readings, they come back as they are.
+    Of a model in which nothing yields, and other readings, they come back as they are.
 
     Raises:
         InputError: The forces seem meant in another way than stated.
     """
-    moved = as_displacements(measurements)
-    if moved is measurements or not any(p.free for p in model.parameters):
+    moved = as_moved(model, measurements)
+    if moved is measurements:
         return measurements
     readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
     refuse_other_forces(_rigid(model, readings), readings)
     return moved
+
+
+def as_moved(model: Model, measurements: Measurements) -> Measurements:
+    """The same, whatever the forces may be meant as."""
+    yields = any(isinstance(effect, Elastic) for effect in model.effects)
+    return as_displacements(measurements) if yields else measurements
 
 
 def _rigid(model: Model, readings: Measurements) -> Calibration:

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import PER_ROW, Measurements
+from sk120stiff.measurements.directions import along_axes
 
 _SAME = (
     "robot", "base_frame", "tool_frame", "joint_names", "joint_kinds", "point", "force_point",
@@ -46,9 +48,11 @@ def join_measurements(parts: Sequence[Measurements]) -> Measurements:
             "one part says how zero readings are shared, another does not",
             remedy="Write displacement.zero in both settings: shared or separate.",
         )
+    gauges = any(part.directions is not None for part in parts)
     changes: dict[str, Any] = {"zero": first.zero if len(words) == 1 else "shared"}
     for name in PER_ROW:
-        values = [getattr(part, name) for part in parts]
+        values = [_along(part) if gauges and name == "directions" else getattr(part, name)
+                  for part in parts]  # fmt: skip
         if any((value is None) != (values[0] is None) for value in values):
             raise InputError(
                 f"one part has the column {name}, another has not",
@@ -58,9 +62,18 @@ def join_measurements(parts: Sequence[Measurements]) -> Measurements:
             changes[name] = tuple(cell for value in values for cell in value)
         elif values[0] is not None:
             changes[name] = np.concatenate(values)
+    if gauges and along_axes(changes["directions"]).all():
+        changes["directions"] = None  # their axes are those of the base
     groups = [np.unique(part.zero_group, return_inverse=True)[1] for part in parts]
     start = np.cumsum([0, *(int(group.max()) + 1 for group in groups)])
     changes["zero_group"] = np.concatenate([g + s for g, s in zip(groups, start, strict=False)])
     common = [key for key in first.extra if all(key in part.extra for part in parts)]
     changes["extra"] = {k: tuple(c for part in parts for c in part.extra[k]) for k in common}
     return dataclasses.replace(first, **changes)
+
+
+def _along(part: Measurements) -> Array:
+    """(N, 3) what each row was read along; of rows in axes of the base that is x of these axes."""
+    if part.directions is not None:
+        return part.directions
+    return np.tile(np.eye(3)[0], (part.n_readings, 1))

@@ -16,8 +16,7 @@ from sk120stiff.effects import CATALOGUE
 from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.positions.omitted.other_causes import causes_at, slopes
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
-from sk120stiff.identify.positions.uncertainty.compliant_parts import ROUNDING
-from sk120stiff.identify.uncertainty.parts import expected_weights, taken, yields
+from sk120stiff.identify.uncertainty.parts import ROUNDING, expected_weights, taken, yields
 from sk120stiff.plan.positions_pool import PositionsPool
 
 

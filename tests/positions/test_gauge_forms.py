@@ -11,9 +11,12 @@ from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.effects import load_cases_of
+from sk120stiff.errors import InputError
 from sk120stiff.explain import Explanation
+from sk120stiff.identify import as_moved
 from sk120stiff.measurements import FormWhitener, Measurements, ModelForm, as_displacements
 from sk120stiff.measurements.directions import in_columns, turns_onto
+from sk120stiff.measurements.files.writing import write_measurements
 from tests.positions.arm import Arm, Array, poses
 from tests.positions.loaded_arm import MARKERS, SPRINGS, moved, write_moved
 
@@ -168,3 +171,42 @@ def test_gauges_share_a_zero_with_those_of_their_direction_alone(tmp_path: Path)
     data = replace(data, directions=u, displacement=in_columns(u, np.full(3, 1e-4)))
     V = sk.NoiseModel(SIGMA).covariance(data)[0] / SIGMA**2
     np.testing.assert_allclose(V, [[2.0, 0.0, 1.0], [0.0, 2.0, 0.0], [1.0, 0.0, 2.0]])
+
+
+def again(data: Measurements, first: Measurements) -> Measurements:
+    """A second campaign with the same robot."""
+    return replace(data, robot=first.robot, pose=tuple(f"{pose}_again" for pose in data.pose))
+
+
+def test_gauges_along_axes_join_displacements(tmp_path: Path) -> None:
+    """A hold-out file of the other form is asked about what has no name, too."""
+    d, dx = (
+        as_displacements(gauged(tmp_path / form, np.eye(3), 0.0, form)) for form in ("d", "dx")
+    )
+    for one, other in ((d, dx), (dx, d)):
+        both = one + again(other, one)
+        assert both.directions is None
+        np.testing.assert_array_equal(
+            both.displacement, np.vstack([one.displacement, other.displacement])
+        )
+
+
+def test_oblique_gauges_beside_displacements_are_fitted_and_not_written(tmp_path: Path) -> None:
+    oblique = as_displacements(gauged(tmp_path / "d", OBLIQUE, 0.0, "d"))
+    dx = gauged(tmp_path / "dx", np.eye(3), 0.0, "dx")
+    whole = replace(dx, displacement=np.nan_to_num(dx.displacement))
+    both = oblique + again(whole, oblique)
+    model = sk.base_model(robot_of(dx))
+    told = model.predict(load_cases_of(model.robot, both))
+    apart = [model.predict(load_cases_of(model.robot, each)) for each in (oblique, whole)]
+    np.testing.assert_allclose(told, np.vstack(apart), rtol=1e-12, atol=0.0)
+    with pytest.raises(InputError, match="one file holds either"):
+        write_measurements(both, tmp_path / "both.csv")
+
+
+def test_springs_that_are_known_make_gauges_displacements_too(tmp_path: Path) -> None:
+    data = gauged(tmp_path / "d", np.eye(3), 0.0, "d")
+    model = sk.base_model(robot_of(data))
+    held = replace(model, parameters=tuple(replace(p, free=False) for p in model.parameters))
+    assert as_moved(held, data).displacement is not None
+    assert as_moved(sk.Model(model.robot), data) is data

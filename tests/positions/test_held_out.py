@@ -19,6 +19,7 @@ from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import calibrate
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
+from sk120stiff.show.stories.positions_report import _not_told
 from tests.positions.arm import errors, poses, tracked, write
 from tests.positions.test_forms import calibrated, rows
 
@@ -91,6 +92,8 @@ def test_alternatives_that_are_hardly_likely_share_a_line(answer: Explained) -> 
     assert f"{item.effect.id} or a:1 or d:4 or one of 2 that are hardly" in headline(found)
     shown = [part for part in _parts(found, Path("out")) if isinstance(part, str)]
     assert "  or, each with P < 0.01 here: b:2 or c:3" in shown
+    told = _not_told(found, several)
+    assert told == " Not told from: a:1 (P = 0.20) and 2 others, each with P < 0.01."
     one = replace(several, alternatives=("a:1", "b:2"), exact=())
     assert found.rivals_of(one) == (["a:1", "b:2"], [])
 

@@ -15,12 +15,9 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Catalogue, Effect, LinearElastic
 from sk120stiff.effects.options import Options
 from sk120stiff.errors import listed
-from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.uncertainty.parts import moved_by_parts, taken, weights, yields
+from sk120stiff.identify.uncertainty.parts import moved_by_parts, springs_told, yields
 from sk120stiff.model import Parameter
-
-ROUNDING = 1e-9  # of the largest singular value, below which columns tell nothing new
 
 
 def beside_parts(found: Fit, catalogue: Catalogue, without: Collection[str] = ()) -> Fit:
@@ -34,24 +31,25 @@ def beside_parts(found: Fit, catalogue: Catalogue, without: Collection[str] = ()
         catalogue: All that may be at work.
         without: Effects that are known to be rigid, by ``name`` or ``name:where``.
     """
-    springs = np.array([p.effect.joint_spring for p in found.parameters], dtype=bool)
-    springs &= (found.x > 0.0) & found.identifiable
-    if not springs.any() or not np.isfinite(found.unit) or not found.unit:
+    if not springs_told(found).any():
         return found
     parts = [e for e in _parts(found, catalogue) if not {e.id, e.name} & set(without)]
     if not parts:
         return found
-    moving = ~found.at_bound
-    kept = -found.jacobian[:, moving] / found.unit
-    ways = _shown(found, parts) / found.unit
-    takes = np.zeros((ways.shape[1], len(found.x)))
-    takes[:, moving] = taken(kept, 1.0 / found.problem.plausible[moving] ** 2, ways)
-    left = beside(orthonormal(kept, ROUNDING), ways)
-    share = np.abs(takes[:, springs] / found.x[springs]).max(axis=1)
-    told = left.T @ (found.residual / found.unit)
     effects = [effect for effect in parts for _ in effect.parameters]
-    moves = np.sqrt(weights(left, share, told, 1.0 / len(effects)))[:, None] * takes
-    return moved_by_parts(found, moves, effects)
+    moving, known = ~found.at_bound, found.beforehand.rows()  # no part bends what is known before
+    apart = np.zeros((len(known), len(effects)))
+    kept = np.vstack([-found.jacobian, known])[:, moving] / found.unit
+    return moved_by_parts(
+        found,
+        kept,
+        1.0 / found.problem.plausible[moving] ** 2,
+        np.vstack([_shown(found, parts), apart]) / found.unit,
+        effects,
+        base=kept,
+        left=np.append(found.residual, apart[:, 0]) / found.unit,
+        odds=1.0 / len(effects),
+    )
 
 
 def if_parts_yield(found: Fit, catalogue: Catalogue) -> tuple[str, ...]:

@@ -13,15 +13,17 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import expit, log_ndtr
 
-from sk120stiff.arrays import Array, lengths_of
+from sk120stiff.arrays import Array, Mask, lengths_of
 from sk120stiff.effects import Effect, LinearElastic
 from sk120stiff.errors import listed
+from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import posterior
 from sk120stiff.identify.written import AnyFit, with_values
 
 MOST = 0.5  # of a spring that may be a part's beside it: gears are softer
 DRAWS = 200  # of the noise that readings will have
+ROUNDING = 1e-9  # of the largest singular value, below which columns tell nothing new
 
 
 def taken(kept: Array, prior: Array, ways: Array) -> Array:
@@ -52,11 +54,47 @@ def expected_weights(shown: Array, share: Array, rng: np.random.Generator) -> Ar
     return np.asarray(np.mean([weights(shown, share, each) for each in told], axis=0))
 
 
-def moved_by_parts(found: AnyFit, moves: Array, effects: Sequence[Effect]) -> AnyFit:
-    """The fit with moves (K, P) of its estimates by as many parts in its standard errors."""
-    by = tuple(effects[int(k)].id for k in np.argmax(np.abs(moves), axis=0))
-    shown = tuple(name if moves[:, k].any() else "" for k, name in enumerate(by))
-    return with_values(replace(found, parts=moves.T @ moves, parts_by=shown))
+def springs_told(found: Fit) -> Mask:
+    """(P,) springs that parts may have moved; none where nothing tells the noise."""
+    springs = np.array([p.effect.joint_spring for p in found.parameters], dtype=bool)
+    known = bool(np.isfinite(found.unit) and found.unit)
+    return springs & (found.x > 0.0) & found.identifiable & known
+
+
+def moved_by_parts(
+    found: AnyFit,
+    kept: Array,
+    prior: Array,
+    ways: Array,
+    effects: Sequence[Effect],
+    *,
+    base: Array,
+    left: Array,
+    odds: float = 1.0,
+) -> AnyFit:
+    """The fit with what parts may have made of its estimates in their standard errors.
+
+    Everything is in units of what is left.
+
+    Args:
+        found: The fit.
+        kept, prior: (M, Q) derivative by estimates on no bound, whatever else is beside them behind
+            it, and their inverse variances before.
+        ways: (M, K) what parts do per usual size of their compliances.
+        effects: The part that each of these is of.
+        base: (M, B) columns of all that is estimated.
+        left: (M,) what is left.
+        odds: See `weights`.
+    """
+    springs, moving = springs_told(found), ~found.at_bound
+    takes = np.zeros((ways.shape[1], len(found.x)))
+    takes[:, moving] = taken(kept, prior, ways)[:, : moving.sum()]
+    shown = beside(orthonormal(base, ROUNDING), ways)
+    share = np.abs(takes[:, springs] / found.x[springs]).max(axis=1)
+    moves = np.sqrt(weights(shown, share, shown.T @ left, odds))[:, None] * takes
+    by = [effects[int(k)].id for k in np.argmax(np.abs(moves), axis=0)]
+    by = [name if moves[:, k].any() else "" for k, name in enumerate(by)]
+    return with_values(replace(found, parts=moves.T @ moves, parts_by=tuple(by)))
 
 
 def mostly_parts(found: Fit) -> tuple[str, ...]:

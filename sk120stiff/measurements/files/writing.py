@@ -135,6 +135,12 @@ def columns_of(
         sigma = of_displacement(sigma, m.zero_count)
     moved = m.displacement
     if m.directions is not None and moved is not None:
+        if (m.read.sum(axis=1) > 1).any():
+            raise InputError(
+                "gauges along directions of their own stand beside whole displacements, and one "
+                "file holds either",
+                remedy="Write them to two files.",
+            )
         yield _numbers("d", of_columns(m.directions, moved), length, "length")
         for k, name in enumerate(DIRECTIONS):
             yield name, map(_digits, m.directions[:, k])

@@ -85,7 +85,7 @@ def gap_waterfall(
             last = k == len(steps) - 1
             panel.barh(k, fit[k], height=0.56, zorder=2,
                        color=palette.GAP if last else palette.BEFORE)  # fmt: skip
-            saved = f"  (−{start - fit[k]:.3g})" if k and start > fit[k] else ""
+            saved = f"  (−{_short(start - fit[k])})" if k and start > fit[k] else ""
             inside = fit[k] > 0.3 * farthest
             edge = fit[k] if inside else np.nanmax([fit[k], start, held[k]])
             panel.annotate(

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sk120stiff.explain.findings import sentence_in
-from sk120stiff.explain.positions.answer.explained import Explained
+from sk120stiff.errors import listed
+from sk120stiff.explain.findings import likely, sentence_in
+from sk120stiff.explain.positions.answer.explained import Explained, Named
 from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
 from sk120stiff.identify.positions.words import findings, unseen
 from sk120stiff.show.figures import gap_waterfall
@@ -62,7 +63,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     named = [
         f"{sentence_in(answer.final.model, item.effect)} (`{item.effect.id}`) "
         f"{answer.chance_of(item)}; {answer.taken_off(item, ' of the held-out gap')}."
-        + (f" Not told from: {', '.join(item.others)}." if item.others else "")
+        + _not_told(answer, item)
         + (f" By no pose told from: {', '.join(item.untold)}." if item.untold else "")
         + (f" Always the same in such readings: {', '.join(same)}." if (same := item.same) else "")
         for item in answer.findings
@@ -106,6 +107,18 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         lead=headline(answer),
         reproducibility=reproducibility,
     )
+
+
+def _not_told(answer: Explained, item: Named) -> str:
+    """What other poses could tell from a name; what is hardly likely is counted."""
+    worth, faint = answer.rivals_of(item)
+    told = [
+        f"{name} ({likely(answer.probabilities.get(name, 0.0))})"
+        for name in worth
+        if name in item.others
+    ]
+    told += [f"{len(faint)} others, each with {likely(0.0)}"] if faint else []
+    return f" Not told from: {listed(told)}." if told else ""
 
 
 def _size(answer: Explained) -> str:

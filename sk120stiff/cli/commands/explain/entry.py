@@ -24,9 +24,8 @@ from sk120stiff.cli.tables import progress_bar
 from sk120stiff.explain import Explained, Explanation, Options, explain
 from sk120stiff.explain.options import MOST_EFFECTS
 from sk120stiff.explain.priors import priors_from
-from sk120stiff.identify import refuse_for_positions
-from sk120stiff.measurements import as_displacements
-from sk120stiff.model import Model
+from sk120stiff.identify import as_moved, refuse_for_positions
+from sk120stiff.model import Model, base_model
 from sk120stiff.plan import Cell
 
 
@@ -84,7 +83,9 @@ def command(
         seed=seed,
         cell=opened_cell(robot, cell, data, model),
     )
-    positions = as_displacements(readings).absolute is not None
+    given = None if model is None else start_model(robot, model)
+    springs = base_model(robot) if given is None else given
+    positions = as_moved(springs, readings).absolute is not None
     if positions:
         refuse_for_positions(readings, **{
             "--assume": assume, "--max-effects": max_effects != MOST_EFFECTS,
@@ -92,7 +93,7 @@ def command(
         })  # fmt: skip
     by_load = readings.absolute is not None and readings.absolute.channels.displacement is not None
     plain = positions and not by_load and model is None  # of displacements springs are no news
-    start = Model(robot) if plain else start_model(robot, model)
+    start = Model(robot) if plain else (given or start_model(robot, None))
     inputs = [data, data.with_suffix(".yaml"), *(each for each in (holdout, model, task) if each)]
     driven = None if task is None else opened_task(task, robot, options.cell or Cell())
     with progress_bar("explain") as report:

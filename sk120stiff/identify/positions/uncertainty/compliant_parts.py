@@ -13,12 +13,9 @@ from collections.abc import Collection
 import numpy as np
 
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect
-from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.omitted.selection import Blocks
-from sk120stiff.identify.uncertainty.parts import moved_by_parts, taken, weights, yields
-
-ROUNDING = 1e-9  # of the largest singular value, below which columns tell nothing new
+from sk120stiff.identify.uncertainty.parts import moved_by_parts, springs_told, yields
 
 
 def beside_parts(
@@ -33,9 +30,7 @@ def beside_parts(
         catalogue: All that may be at work.
         without: Effects that are known to be rigid, by ``name`` or ``name:where``.
     """
-    springs = np.array([p.effect.joint_spring for p in found.parameters], dtype=bool)
-    springs &= (found.x > 0.0) & found.identifiable
-    if not springs.any() or not np.isfinite(found.unit) or not found.unit:
+    if not springs_told(found).any():
         return found
 
     def wanted(cause: Effect) -> bool:
@@ -50,12 +45,12 @@ def beside_parts(
     beyond = np.hstack([np.zeros((len(found.residual), 0)), *(blocks.whole[k] for k in lacking)])
     kept = np.hstack([-found.jacobian[:, moving], beyond]) / found.unit
     prior = np.concatenate([1.0 / found.problem.prior[moving] ** 2, np.ones(beyond.shape[1])])
-    ways = np.hstack([blocks.whole[k] for k in parts]) / found.unit
-    takes = np.zeros((ways.shape[1], len(found.x)))
-    takes[:, moving] = taken(kept, prior, ways)[:, : moving.sum()]
-    shown = beside(orthonormal(np.hstack([blocks.base, beyond]), ROUNDING), ways)
-    share = np.abs(takes[:, springs] / found.x[springs]).max(axis=1)
-    told = shown.T @ (found.residual / found.unit)
-    moves = np.sqrt(weights(shown, share, told))[:, None] * takes
-    effects = [blocks.causes[k] for k in parts for _ in blocks.causes[k].parameters]
-    return moved_by_parts(found, moves, effects)
+    return moved_by_parts(
+        found,
+        kept,
+        prior,
+        np.hstack([blocks.whole[k] for k in parts]) / found.unit,
+        [blocks.causes[k] for k in parts for _ in blocks.causes[k].parameters],
+        base=np.hstack([blocks.base, beyond]),
+        left=found.residual / found.unit,
+    )
