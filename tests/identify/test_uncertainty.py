@@ -8,6 +8,7 @@ import yaml
 
 from sk120stiff.effects import effect, load_case, load_cases_of
 from sk120stiff.identify import fit, known_model
+from sk120stiff.identify.uncertainty.known_model import _together
 from sk120stiff.measurements import ModelForm, NoiseStatement
 from sk120stiff.model import (
     Model,
@@ -78,6 +79,21 @@ def test_what_other_models_make_of_the_values_leaves_the_readings_predicted(trut
         - known_model(replace(formed, foreign=None)).uncertainty.covariance
     )
     np.testing.assert_allclose(more, foreign * np.outer(scale, scale), rtol=1e-6)
+
+
+def test_a_value_that_stays_does_not_make_up_for_one_that_moves() -> None:
+    """Two that are nearly one: what one may move by is what readings allow of it alone."""
+    rng = np.random.default_rng(1)
+    J = rng.normal(size=(30, 2))
+    J[:, 1] = J[:, 0] + 1e-5 * J[:, 1]
+    moved = np.diag([1e4, 0.0])
+    told = _together(moved, J, 3.0)
+    assert np.trace(J @ told @ J.T) == pytest.approx(3.0, rel=1e-3)
+    assert told[1, 1] == 0.0
+    whole = _together(np.diag([1e4, 1e4]), J, 3.0)
+    expected = np.linalg.inv(1e-4 * np.eye(2) + J.T @ J / 3.0)
+    np.testing.assert_allclose(whole, expected, rtol=1e-6)
+    assert np.trace(J @ whole @ J.T) < 6.0 < 1e-3 * whole[0, 0] * (J[:, 0] @ J[:, 0])
 
 
 def test_moves_of_all_sizes_leave_a_covariance_that_readings_can_have(truth: Model) -> None:

@@ -20,7 +20,6 @@ from sk120stiff.robot.anatomy import arm_length
 SIGNIFICANT = 0.05  # probability of noise alone below which something is left
 AS_WELL = 3.0  # of the noise's variance: other models fit worse by up to 10 in χ², evenly spread
 OMITTED = 1.0  # of the noise's variance: what is left out is told no worse than what was estimated
-TINY = 1e-12  # of the moves' variance
 ROUNDING = 1e-12  # of a standard error over the plausible change that does not show
 
 
@@ -60,7 +59,7 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     size = span * scale
     per_noise = (V / singular) * size[:, None]
     covariance = fit.unit**2 * per_noise @ per_noise.T
-    covariance = covariance + _beside_noise(fit, covariance)
+    covariance = covariance + _beside_noise(fit, informed / fit.unit) * np.outer(scale, scale)
     whole = (null**2).T @ (problem.plausible / span)  # a change that does not show is plausible
     shows = np.linalg.norm(informed, axis=0)[:, None] * span[:, None] * np.abs(null) * whole
     unseen = np.where(lost[:, None] | (shows > FAINTEST), null * size[:, None] * whole, 0.0).T
@@ -77,34 +76,39 @@ def known_estimates(fit: Fit, sigma: float | None, source: str) -> Uncertainty:
     )
 
 
-def _beside_noise(fit: Fit, covariance: Array) -> Array:
-    """What is not of the readings' noise, of the internal values.
+def _beside_noise(fit: Fit, informed: Array) -> Array:
+    """(P, P) what is not of the readings' noise, of the estimates.
 
     Another model that explains the readings as well moves the estimates, each by so much, and yet
     together to where the readings are predicted nearly alike; so does what the model leaves out. A
     foreign cause has moved them by more than noise may, and together.
+
+    Args:
+        fit: The fit.
+        informed: (R, P) derivative in units of the noise, and what is known beforehand.
     """
-    moves = fit.moves.scaled(fit.problem.scale)
-    models = _together(np.diag(moves.models**2) + moves.parts, AS_WELL * covariance)
-    return np.asarray(moves.foreign + models + _together(moves.omitted, OMITTED * covariance))
+    moves = fit.moves
+    models = _together(np.diag(moves.models**2) + moves.parts, informed, AS_WELL)
+    return np.asarray(moves.foreign + models + _together(moves.omitted, informed, OMITTED))
 
 
-def _together(moved: Array, noise: Array) -> Array:
+def _together(moved: Array, informed: Array, allowed: float) -> Array:
     """(P, P) covariance of moves such that readings are predicted alike up to some noise.
 
-    Of independent moves with the covariance M those that readings of covariance Σ of the estimates
-    allow have the parallel sum of both, M − M (M + Σ)⁻¹ M, taken here in units of the moves.
+    Of moves with the covariance M = H Hᵀ readings with a derivative J leave
+    (M⁻¹ + Jᵀ J / a)⁻¹ = H (1 + (J H)ᵀ J H / a)⁻¹ Hᵀ, where they may be off by a times the noise's
+    variance: what does not move does not make up for what does.
     """
+    size = np.sqrt(np.diag(moved))
+    own = size > 0.0
     together = np.zeros(moved.shape)
-    own = np.flatnonzero(np.diag(moved))
-    size = np.sqrt(np.diag(moved)[own])
     inside = np.ix_(own, own)
-    M, sigma = moved[inside] / np.outer(size, size), noise[inside] / np.outer(size, size)
-    sigma[np.diag_indices(len(own))] += TINY
-    both = M @ np.linalg.solve(M + sigma, sigma)
-    shares, directions = np.linalg.eigh(0.5 * (both + both.T))
-    half = size[:, None] * directions * np.sqrt(np.maximum(shares, 0.0))  # rounding is no variance
-    together[inside] = half @ half.T
+    shares, ways = np.linalg.eigh(moved[inside] / np.outer(size[own], size[own]))
+    H = size[own, None] * ways * np.sqrt(np.maximum(shares, 0.0))  # rounding is no variance
+    seen = informed[:, own] @ H
+    factor = np.linalg.cholesky(np.eye(H.shape[1]) + seen.T @ seen / allowed)
+    half = np.linalg.solve(factor, H.T)
+    together[inside] = half.T @ half
     return together
 
 
