@@ -15,7 +15,7 @@ from sk120stiff.cli.path_words import FAR_OFF
 from sk120stiff.cli.tables import progress_bar, table
 from sk120stiff.cli.uncertainty import plus_minus, sentences, uncertainty_keys
 from sk120stiff.data_checks import look
-from sk120stiff.errors import warn
+from sk120stiff.errors import listed, warn
 from sk120stiff.files import csv_text, will_write, write_atomically
 from sk120stiff.identify.positions.checks.reregistration import placed_anew
 from sk120stiff.measurements import Measurements
@@ -34,6 +34,8 @@ SINGLE = (  # columns of single numbers, what read them, and in what unit
     ("gap_inc[urad]", "levels", "urad"),
 )
 LISTED = 40  # rows that people are shown
+TOLD = 6  # rows far off all others that are told one by one
+FAR = 10.0  # times the median distance off, beyond which a row is told apart
 
 
 def command(model: ModelArgument, data: DataArgument, out: OutOption = None) -> Answer:
@@ -116,8 +118,9 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
             sizes[unit].append(read)
             shown = unit.replace("u", "µ", 1)
             parts.append(f"Gap over {len(read)} readings of {what}: {rms(read):.4g} {shown} rms.")
-    gap = 1e6 * predicted.gap(readings)[readings.use]
-    gap = gap[np.isfinite(gap).all(axis=1)]
+    gap = 1e6 * predicted.gap(readings)
+    rows = np.flatnonzero(readings.use & np.isfinite(gap).all(axis=1))
+    gap = gap[rows]
     if len(gap):
         left, far = rms(gap), float(np.linalg.norm(gap, axis=1).mean())
         sizes["um"].append(gap.ravel())
@@ -126,6 +129,18 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
         parts.append(
             f"Gap over {len(gap)} {of}: {left:.4g} µm rms per axis, {far:.4g} µm mean distance."
         )
+        lengths = np.linalg.norm(gap, axis=1)
+        off = lengths > FAR * np.median(lengths)
+        document["far_off"] = [
+            {"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows[off]
+        ]
+        if off.any():
+            document["rms_without_um"] = rms(gap[~off])
+            lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows[off]]
+            parts.append(
+                f"More than {FAR:g} times the median distance off: {listed(lines, most=TOLD)}. "
+                f"Without that {rms(gap[~off]):.4g} µm rms per axis."
+            )
     of = "r" if "gap_rx[urad]" in columns else "dr"
     turns = np.array([columns.get(f"gap_{of}{axis}[urad]", []) for axis in "xyz"], dtype=float).T
     turns = turns[readings.use & np.isfinite(turns).all(axis=1)] if turns.size else turns

@@ -9,7 +9,7 @@ import pytest
 from sk120stiff.measurements import read_measurements
 from sk120stiff.model import joint_spring_model, write_model
 from sk120stiff.robot import load_robot
-from tests.positions.arm import tracked
+from tests.positions.arm import errors, poses, tracked, write
 from tests.positions.test_forms import FIT, NOISE, SIGMA
 from tests.positions.test_references import WARM, A, grown, readings_of
 
@@ -136,3 +136,18 @@ def test_identify_takes_growth_and_writes_from_where_it_counts(run, tmp_path: Pa
         said = run("predict", str(out), str(row.path), "--json").document["rows"][0]
         for axis in "xyz":
             assert abs(said[f"gap_{axis}[um]"]) < 4.0 * said[f"std_parameters_{axis}[um]"]
+
+
+def test_positions_far_off_all_others_are_told_apart(run, tmp_path: Path) -> None:
+    """`explain` and `identify` set such a row aside: their gap is the one without it."""
+    a = poses(30, 4)
+    x = tracked(errors(4).stands(a)[0]) + 2e-5 * np.random.default_rng(4).normal(size=(30, 3))
+    x[7] += [0.004, 0.0, 0.003]
+    file, model = str(write(tmp_path, a, x, FIT)), str(tmp_path / "model.yaml")
+    fitted = run("identify", file, "--out", model, "--json").document
+    found = run("predict", model, file, "--json").document
+    assert [each["line"] for each in found["far_off"]] == [9]
+    assert [each["line"] for each in fitted["set_aside"]] == [9]
+    assert found["rms_without_um"] == pytest.approx(fitted["rms_um"], rel=0.01)
+    assert found["rms_um"] > 20.0 * found["rms_without_um"]
+    assert "line 9 (pose " in run("predict", model, file).stdout
