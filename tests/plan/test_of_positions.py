@@ -38,6 +38,12 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> sk.Model:
     )
 
 
+@pytest.fixture(scope="module")
+def thirty(model: sk.Model) -> PlanOfPositions:
+    """The arm's own plan: thirty poses for its marker and the noise of its tracker."""
+    return sk.plan_positions(model, 30, point=AT, sigma=SIGMA, candidates=FEW)
+
+
 def springs_of(made: PlanOfPositions, rigid: bool = False) -> dict[str, float]:
     """Standard errors of springs; `rigid`: of an arm whose links are known not to yield."""
     return {
@@ -47,15 +53,16 @@ def springs_of(made: PlanOfPositions, rigid: bool = False) -> dict[str, float]:
     }
 
 
-def test_what_is_promised_is_the_bound_of_the_poses(model: sk.Model) -> None:
-    made = sk.plan_positions(model, 30, point=AT, sigma=SIGMA, candidates=FEW)
-    assert made.is_plan and made.n_readings == 30 and made.absolute is not None
-    least = bound(Arm(compliance=COMPLIANCE, marker=AT), made.joints, SIGMA)
-    found = springs_of(made, rigid=True)
+def test_what_is_promised_is_the_bound_of_the_poses(
+    model: sk.Model, thirty: PlanOfPositions
+) -> None:
+    assert thirty.is_plan and thirty.n_readings == 30 and thirty.absolute is not None
+    least = bound(Arm(compliance=COMPLIANCE, marker=AT), thirty.joints, SIGMA)
+    found = springs_of(thirty, rigid=True)
     assert set(found) == {"j2", "j3", "j4", "j5"}
     for name, std in found.items():
         assert std == pytest.approx(least[int(name[1]) - 1], rel=0.06), name
-    why = {e.parameter.effect.where: e.reason for e in made.expected if e.reason is not None}
+    why = {e.parameter.effect.where: e.reason for e in thirty.expected if e.reason is not None}
     assert "neither weight nor payload" in (why["j1"] or "") and "j6" in why
     others = sk.plan_positions(model, 30, point=AT, sigma=2.0 * SIGMA, candidates=FEW)
     assert others.standard == 2.0 * SIGMA
@@ -63,13 +70,14 @@ def test_what_is_promised_is_the_bound_of_the_poses(model: sk.Model) -> None:
     assert springs_of(others, rigid=True)["j4"] == pytest.approx(duller[3], rel=0.06)
 
 
-def test_links_that_may_bend_are_promised_as_a_fit_will_count_them(model: sk.Model) -> None:
+def test_links_that_may_bend_are_promised_as_a_fit_will_count_them(
+    model: sk.Model, thirty: PlanOfPositions
+) -> None:
     """Of springs by readings of an arm whose links do not, over draws of the noise."""
-    made = sk.plan_positions(model, 30, point=AT, sigma=SIGMA, candidates=FEW)
-    promised, alone = springs_of(made), springs_of(made, rigid=True)
+    promised, alone = springs_of(thirty), springs_of(thirty, rigid=True)
     squares = dict.fromkeys(promised, 0.0)
     for seed in range(8):
-        read = sk.simulate(model, made, noise=sk.NoiseModel(SIGMA), seed=seed).measurements
+        read = sk.simulate(model, thirty, noise=sk.NoiseModel(SIGMA), seed=seed).measurements
         found = sk.fit(model, read).model
         for name in promised:
             std = found.parameter(f"joint_springs:{name}.stiffness").internal_std
@@ -78,26 +86,27 @@ def test_links_that_may_bend_are_promised_as_a_fit_will_count_them(model: sk.Mod
     for name, std in promised.items():
         assert 0.7 * std < np.sqrt(squares[name]) < 1.4 * std, name
     assert promised["j2"] > 5.0 * alone["j2"] and promised["j4"] < 1.2 * alone["j4"]
-    mostly = {e.parameter.effect.id: e.mostly for e in made.expected}
+    mostly = {e.parameter.effect.id: e.mostly for e in thirty.expected}
     assert mostly["joint_springs:j2"].startswith("link_bending") and not mostly["joint_springs:j4"]
 
 
-def test_what_a_fit_of_the_plan_foretells_is_as_far_off_as_was_promised(model: sk.Model) -> None:
-    made = sk.plan_positions(model, 30, point=AT, sigma=SIGMA, candidates=FEW)
+def test_what_a_fit_of_the_plan_foretells_is_as_far_off_as_was_promised(
+    model: sk.Model, thirty: PlanOfPositions
+) -> None:
     rng = np.random.default_rng(3)
-    elsewhere = made.candidates.problem.measurements.joints
+    elsewhere = thirty.candidates.problem.measurements.joints
     off: list[float] = []
     for seed in range(12):
         arm = replace(errors(seed), compliance=COMPLIANCE, marker=AT + 1e-3 * rng.normal(size=3))
-        x = tracked(arm.stands(made.joints)[0])
+        x = tracked(arm.stands(thirty.joints)[0])
         x = x + SIGMA * rng.normal(size=x.shape)
-        channels = replace(made.absolute.channels, position=x, sigma={"position": SIGMA})
-        read = replace(made, absolute=replace(made.absolute, channels=channels))
+        channels = replace(thirty.absolute.channels, position=x, sigma={"position": SIGMA})
+        read = replace(thirty, absolute=replace(thirty.absolute, channels=channels))
         found = calibrate(model, read, waves=False, shared=False)
-        asked = made.candidates.problem.measurements
+        asked = thirty.candidates.problem.measurements
         seen = sk.predict(found.model, asked).position
         off.append(float(np.mean((seen - tracked(arm.stands(elsewhere)[0])) ** 2)))
-    assert np.sqrt(np.mean(off)) == pytest.approx(made.foretold, rel=0.2)
+    assert np.sqrt(np.mean(off)) == pytest.approx(thirty.foretold, rel=0.2)
 
 
 def test_it_is_better_than_poses_without_a_design(model: sk.Model) -> None:

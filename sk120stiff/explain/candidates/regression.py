@@ -135,6 +135,8 @@ class Regression:
 
         By little it does where a part is stiff one way and its readings err; a fit does not let it.
         """
+        if not self._couple[solved.columns].any():
+            return True
         for i, j, k, most in self._couplings:
             if k in solved.columns:
                 own = (float(solved.values[solved.columns == column].sum()) for column in (i, j, k))
@@ -155,16 +157,25 @@ class Regression:
                     found.append((int(columns[i]), int(columns[j]), int(columns[k]), most))
         return tuple(dict.fromkeys(found))
 
+    @cached_property
+    def _couple(self) -> Mask:
+        """(P,) which columns couple two others."""
+        out = np.zeros(self.X.shape[1], dtype=bool)
+        out[[k for _, _, k, _ in self._couplings]] = True
+        return out
+
     def are_sizes_believed(self, solved: Solved) -> bool:
         """Does no value of an added parameter lie beyond what is believed?"""
-        size, added = np.abs(solved.values), ~self.in_base[solved.columns]
-        beyond = added & (size > self._always[solved.columns])
-        return not beyond.any() or not (added & (size > self.believed(solved))).any()
+        size = np.abs(solved.values)
+        if not (size > self._always[solved.columns]).any():
+            return True
+        return not ((size > self.believed(solved)) & ~self.in_base[solved.columns]).any()
 
     @cached_property
     def _always(self) -> Array:
-        """(P,) what is believed of the stiffest arm."""
-        return np.where(self.compliances, self.plausible / self.softness, self.plausible)
+        """(P,) what is believed of the stiffest arm, of the base model anything."""
+        limits = np.where(self.compliances, self.plausible / self.softness, self.plausible)
+        return np.where(self.in_base, np.inf, limits)
 
     @cached_property
     def _is_spring(self) -> Mask:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_solve, solve_triangular
@@ -203,38 +203,59 @@ def solve_sets(sums: Sums, sets: Sequence[Index], lower: Array, plausible: Array
     shape = len(sets), max(len(each) for each in sets)
     columns, moves = np.zeros(shape, dtype=np.intp), np.zeros(shape, dtype=bool)
     values, rss = np.zeros(shape), np.zeros(len(sets))
+    size = np.sqrt(sums.gram.diagonal() + plausible**-2.0)
+    shown = size > 0.0
+    size[~shown] = 1.0
+    problem = _Scaled(sums, size, sums.moment / size, shown, lower == 0.0)
     for k, each in enumerate(sets):
-        places, found, rss[k] = _least_squares(sums, each, lower, plausible)
+        places, found, rss[k] = _least_squares(problem, each)
         columns[k, : len(each)], moves[k, places], values[k, places] = each, True, found
     return Solutions(columns, moves, values, rss)
 
 
-def _least_squares(
-    sums: Sums, columns: Index, lower: Array, plausible: Array
-) -> tuple[Index, Array, float]:
+class _Scaled(NamedTuple):
+    """Least squares of which every column has length one, its prior included.
+
+    Attributes:
+        sums: Of the columns as they are.
+        size: (P,) their lengths; 1 for those that are not `shown` at all.
+        right: (P,) their moments.
+        shown: (P,) those that are not zero.
+        bounded: (P,) those whose values are not negative.
+    """
+
+    sums: Sums
+    size: Array
+    right: Array
+    shown: Mask
+    bounded: Mask
+
+
+def _least_squares(problem: _Scaled, columns: Index) -> tuple[Index, Array, float]:
     """Places of those columns that move, their values, and the residual sum of squares."""
-    size = np.sqrt(sums.gram[columns, columns] + plausible[columns] ** -2.0)
-    active = np.flatnonzero(size > 0.0)
-    size[size == 0.0] = 1.0
+    sums, size, right = problem.sums, problem.size[columns], problem.right[columns]
+    bounded = problem.bounded[columns]
+    active = problem.shown[columns].nonzero()[0]
     whole = sums.gram[columns[:, None], columns] / (size[:, None] * size)
     whole.flat[:: len(columns) + 1] = 1.0
-    right = sums.moment[columns] / size
-    bound = lower[columns] == 0.0
     while len(active):
-        scaled = whole.take(active, axis=0).take(active, axis=1)
-        factor, found, failed = dposv(scaled, right[active], lower=1)
+        if len(active) < len(columns):
+            scaled, along = whole.take(active, axis=0).take(active, axis=1), right.take(active)
+        else:
+            scaled, along = whole, right
+        factor, found, failed = dposv(scaled, along, lower=1)
         if failed:
             drop = _dependent(scaled)
         else:
             pivots = factor.diagonal()
             drop = int(pivots.argmin())
             if pivots[drop] >= DEPENDENT:
-                held = np.where(bound[active], found, 0.0)
+                held = found * bounded.take(active)
                 drop = int(held.argmin())
                 if held[drop] >= 0.0:
-                    half, _ = dtrtrs(factor, right[active], lower=1)
+                    half, _ = dtrtrs(factor, along, lower=1)
                     rss = max(sums.square - float(half @ half), 0.0)
-                    return active, found / size[active], rss
+                    return active, found / size.take(active), rss
         active = np.concatenate((active[:drop], active[drop + 1 :]))
     return active, np.zeros(0), sums.square
 
