@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import Array
 from sk120stiff.data_checks.passive import compliances
-from sk120stiff.effects import load_cases_of
+from sk120stiff.effects import Effect, effect, load_cases_of
 from sk120stiff.measurements import Measurements
-from sk120stiff.model import Model, joint_spring_model
+from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.model.typical import TYPICAL
 from sk120stiff.robot import Robot
 from sk120stiff.robot.anatomy import WHOLE_ARM, arm_length
@@ -39,6 +40,7 @@ GUESSED = ("starting value", TYPICAL)  # origins of springs that nobody measured
 KNOWN = 3.0  # no arm is so many times softer or stiffer than the springs identified for it
 CERTAIN = 200.0  # no arm is so much softer or stiffer than another; a unit is
 BEYOND = 1.3  # times softer or stiffer than usual for its size, from where on it is told
+BROUGHT = ("base_rocking", "base_sliding", "tool_compliance")  # not of the arm's maker
 ALIKE = 0.3  # share of the readings' squares that one factor must explain to say anything
 UNITS = (
     (4.448, "forces in lbf labelled N", "forces in N labelled lbf"),
@@ -68,18 +70,14 @@ def yields_times(
     used = measurements.masked()
     if used.displacement is None:
         return None
-    elastic = [k for k, p in enumerate(model.parameters) if p.spec.reciprocal]
-    load_cases = load_cases_of(model.robot, used)
-    _, S = model.predict_with_sensitivities(load_cases, np.zeros(len(model.values)))
-    each = np.where(used.read[:, :, None], S[:, :, elastic] * model.values[elastic], 0.0)
-    together = [k for k in range(len(elastic)) if k not in apart]
-    A = np.concatenate([each[:, :, together].sum(axis=2)[:, :, None], each[:, :, apart]], axis=2)
-    A = A.reshape(-1, A.shape[2])
-    c = compliances(A.T @ A, A.T @ used.moved.ravel())
+    each, d, _ = _elastic(model, used)
+    together = [k for k in range(each.shape[1]) if k not in apart]
+    A = np.column_stack([each[:, together].sum(axis=1), each[:, apart]])
+    c = compliances(A.T @ A, A.T @ d)
     if c is None or c[0] <= 0.0:
         return None
-    along = c * (A.T @ used.moved.ravel())  # what each explains of the readings' squares
-    beside = float((used.moved**2).sum() - along[1:].sum())
+    along = c * (A.T @ d)  # what each explains of the readings' squares
+    beside = float(d @ d - along[1:].sum())
     return float(c[0]) if along[0] > ALIKE * beside else None
 
 
@@ -101,7 +99,7 @@ def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
     robot = model.robot
     if any(p.spec.reciprocal and p.origin not in GUESSED for p in model.parameters):
         times = yields_times(model, measurements)
-        if times is None:
+        if times is None or (times > KNOWN and _of_what_was_brought(model, measurements, KNOWN)):
             return None
         said = _times(times, "the model's springs let it (if they are of this arm)")
         return _doubt(said, times, 1.0 / KNOWN, KNOWN)
@@ -112,14 +110,50 @@ def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
     softest, stiffest = usual_stiffness(length)
     middle = float(np.sqrt(softest * stiffest))
     base = np.where(np.arange(robot.n) < 3 + len(rails), middle, WRIST * middle)
-    times = yields_times(joint_spring_model(robot, base), measurements, rails)
-    if times is None:
+    usual, most = joint_spring_model(robot, base), middle / softest * BEYOND
+    times = yields_times(usual, measurements, rails)
+    if times is None or (times > most and _of_what_was_brought(usual, measurements, most)):
         return None
     said = (
         f"the springs of the base joints come out at about {middle / times:.2g} N*m/rad, "
         f"usual on an arm of {length:.2g} m are {softest:.2g} to {stiffest:.2g}"
     )
-    return _doubt(said, times, middle / stiffest / BEYOND, middle / softest * BEYOND)
+    return _doubt(said, times, middle / stiffest / BEYOND, most)
+
+
+def _of_what_was_brought(model: Model, measurements: Measurements, most: float) -> bool:
+    """Do foundation and tool yield so much, with half of the springs no softer than `most` times?
+
+    What stands on wheels, or carries a tool on rubber, may be softer there than all its drives. A
+    unit that is wrong makes all of them look soft alike.
+    """
+    there = {p.effect.name for p in model.parameters}
+    more = [effect(model.robot, name) for name in BROUGHT if name not in there]
+    if not more:
+        return False
+    beside = model + [
+        Parameter(each, spec, spec.usual) for each in more for spec in each.parameters
+    ]
+    A, d, of = _elastic(beside, measurements.masked())
+    c = compliances(A.T @ A, A.T @ d)
+    if c is None:
+        return False
+    springs = c[[each.joint_spring for each in of]]
+    moving = springs[springs > 0.0]
+    return not len(moving) or bool(np.median(moving) < most)
+
+
+def _elastic(model: Model, used: Measurements) -> tuple[Array, Array, list[Effect]]:
+    """(3 N, k) what the elastic parameters do to what was read (3 N,), and their effects."""
+    elastic = [k for k, p in enumerate(model.parameters) if p.spec.reciprocal]
+    load_cases = load_cases_of(model.robot, used)
+    _, S = model.predict_with_sensitivities(load_cases, np.zeros(len(model.values)))
+    each = np.where(used.read[:, :, None], S[:, :, elastic] * model.values[elastic], 0.0)
+    return (
+        each.reshape(-1, len(elastic)),
+        used.moved.ravel(),
+        [model.parameters[k].effect for k in elastic],
+    )
 
 
 def _rails(robot: Robot) -> list[int] | None:

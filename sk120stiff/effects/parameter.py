@@ -24,6 +24,9 @@ class ParameterSpec:
         lower, upper: Physical bounds of the internal value.
         plausible: Internal magnitude above which the value is no explanation, however well it fits.
         typical: Internal magnitude worth telling from zero; scales numerics and detectable sizes.
+        customary: Internal magnitude up to which it is built as a rule, where what users bring, as
+            a foundation on wheels or a tool on rubber, may lie far beyond; None: that is no
+            explanation, see `plausible`.
         meaning: What the public value says, in words: along which axis, and what its sign means.
         quantity: What it measures, by one name under every law of its effect that has it; empty:
             no other law does, or it has the same name there.
@@ -39,11 +42,14 @@ class ParameterSpec:
     upper: float = np.inf
     meaning: str = ""
     quantity: str = ""
+    customary: float | None = None
 
     @property
     def usual(self) -> float:
-        """Standard size before anything is read: halfway from typical to plausible, in decades."""
-        return float(np.sqrt(self.typical * self.plausible))
+        """Standard size before anything is read: halfway, in decades, from typical to the largest
+        that is customary.
+        """
+        return float(np.sqrt(self.typical * (self.customary or self.plausible)))
 
     def public(self, internal: float) -> float:
         """The value as people write it; infinite stiffness where nothing yields."""
@@ -98,12 +104,14 @@ def compliance(
     unit: str = "N*m/rad",
     signed: bool = False,
     quantity: str = "",
+    customary: float | None = None,
 ) -> ParameterSpec:
     """A compliance that people give as a stiffness.
 
     Args:
         softest, typical: Stiffness [unit] below which the value is implausible, and one that is
             often met, on an arm of `REFERENCE_LENGTH`.
+        customary: The softest that is customary; see `ParameterSpec`.
         scale: Length of the arm over `REFERENCE_LENGTH`.
         meaning: What the stiffness resists.
         unit: ``N*m/rad``, ``N/m`` or ``N*m**2`` (beams).
@@ -121,18 +129,19 @@ def compliance(
         lower=-np.inf if signed else 0.0,
         meaning=meaning,
         quantity=quantity,
+        customary=customary and 1.0 / (customary * scale**power),
     )
 
 
 def compliances(
     axes: str, name: str, *, softest: float, typical: float, scale: float, meaning: str,
-    unit: str = "N*m/rad",
+    unit: str = "N*m/rad", customary: float | None = None,
 ) -> tuple[ParameterSpec, ...]:  # fmt: skip
     """Like compliances, one for each letter of `axes`: ``{}`` in name and meaning stands for it."""
     return tuple(
         compliance(
             name.format(axis), softest=softest, typical=typical, scale=scale, unit=unit,
-            meaning=meaning.format(axis),
+            meaning=meaning.format(axis), customary=customary,
         )
         for axis in axes
     )  # fmt: skip

@@ -10,7 +10,7 @@ from sk120stiff import load_robot
 from sk120stiff.data_checks import find_slip, look
 from sk120stiff.data_checks.efforts import efforts_doubt
 from sk120stiff.data_checks.scale import USUAL, usual_stiffness
-from sk120stiff.effects import load_cases_of
+from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import joint_spring_model
 from sk120stiff.robot import Robot
@@ -70,6 +70,27 @@ def test_of_an_arm_on_a_rail_the_gears_are_judged_alone(tmp_path: Path, rail: fl
     found = look(start, replace(readings, displacement=moved / 25.4)).scale
     assert found is not None
     assert "displacements in inch labelled mm" in found.sentence
+
+
+SOFT = {
+    "base_rocking": ({"x": 5e4, "y": 4e4}, "base_link"),  # N·m/rad: on wheels
+    "tool_compliance": ({"turn_x": 4e2, "turn_y": 4e2, "turn_z": 4e3}, "tool0"),  # on rubber
+}
+
+
+@pytest.mark.parametrize("part", SOFT)
+@pytest.mark.parametrize("factor", [1.0, 9.807])
+def test_what_a_user_brought_may_be_softer_than_any_drive(part: str, factor: float) -> None:
+    """All together looks soft, and no unit is to blame; a unit makes springs soft beside it."""
+    known = ARMS["sk120"]()
+    values, where = SOFT[part]
+    whole = (known.model + effect(known.robot, part, where)).with_public(
+        {f"{part}:{where}.stiffness_{name}": value for name, value in values.items()}
+    )
+    sound = known.readings
+    moved = whole.deflect(sound.joints, sound.wrench, point=sound.point)
+    found = look(known.model, loads_as_if(replace(sound, displacement=moved), factor)).scale
+    assert (found is None) == (factor == 1.0)
 
 
 @pytest.mark.parametrize("length", [0.5, 1.0, 1.7, 2.9, 3.3])

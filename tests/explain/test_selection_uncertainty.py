@@ -52,3 +52,22 @@ def test_a_law_with_more_terms_that_nothing_asks_for_widens_no_error():
         p = wide.parameters[k]
         assert abs(p.internal - drift[p.spec.name[-1]]) < 4.0 * p.internal_std
         assert p.internal_std < 2.0 * found.final.parameters[k].internal_std
+
+
+def test_two_names_that_may_stand_for_each_other_may_both_be_named():
+    """Each is among the alternatives of the other: in its place there is nothing to add then."""
+    joint = "joint_2_l"
+    base = base_fit(hidden(LostMotion(joint, {"half_width": 2e-4}), schedule="up_and_down"))
+    robot = base.model.robot
+    laws = [effect(robot, name, joint) for name in ("lost_motion", "friction_hysteresis")]
+    settled = select(
+        base.model, base.problem.measurements, base.problem.noise, laws, max_effects=1, alpha=0.01
+    )
+    found = with_effects(settled, laws)
+    evidence = Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})
+    both = [
+        Finding(each, (other.id,), (), evidence) for each, other in zip(laws, laws[::-1], strict=True)
+    ]
+    wide = with_selection_uncertainty(found, both)
+    assert [each.id for each in wide.model.effects][-2:] == [each.id for each in laws]
+    assert np.isfinite(wide.selection_uncertainty).all()

@@ -100,8 +100,10 @@ def _others(found: Selection, findings: Sequence[Finding]) -> Iterator[list[Effe
     where = {effect.id: k for k, effect in enumerate(regression.candidates)}
     for finding in findings:
         rest = [other.effect for other in findings if other is not finding]
+        named = {effect.id for effect in rest}
         # Beside model-form error constants of poses are part of it, and no candidates.
-        for name in [each for each in finding.alternatives if each in where][:LOOKED_AT]:
+        free = [each for each in finding.alternatives if each in where and each not in named]
+        for name in free[:LOOKED_AT]:
             yield [*rest, regression.candidates[where[name]]]
         for law in _other_laws(found, where[finding.effect.id]):
             yield [*rest, law]

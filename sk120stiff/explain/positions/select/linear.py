@@ -17,6 +17,9 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect, Elastic, LoadError, Weighing
 from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 
+WIDENED = 6  # rounds in which a prior and the size under it come to agree
+AGREED = 0.01  # share of the size by which they may differ still
+
 
 @dataclass(frozen=True, eq=False)
 class Linear:
@@ -181,20 +184,35 @@ class Linear:
         pick = self.picked(chosen)
         G = self.whole if without is None else self.whole - self.sums[without]
         P = self.base.shape[1]
-        while True:
-            inner = G[np.ix_(pick, pick)].copy()
-            prior = np.where(pick < P, 0.0, noise)
-            inner[np.diag_indices(len(pick))] += prior + 1e-12
-            x = np.linalg.solve(inner, G[pick, -1])
-            wrong = (pick >= P) & (x < 0.0)
-            wrong[wrong] = self.positive[pick[wrong] - P]
-            if not wrong.any():
+        times = np.ones(P + self.columns.shape[1])  # of the usual size, how wide a prior is
+        for _ in range(WIDENED):
+            while True:
+                inner = G[np.ix_(pick, pick)].copy()
+                prior = np.where(pick < P, 0.0, noise / times[pick] ** 2)
+                inner[np.diag_indices(len(pick))] += prior + 1e-12
+                x = np.linalg.solve(inner, G[pick, -1])
+                wrong = (pick >= P) & (x < 0.0)
+                wrong[wrong] = self.positive[pick[wrong] - P]
+                if not wrong.any():
+                    break
+                pick = pick[~wrong]  # a part that would have to be softer than rigid is rigid
+            wider = np.where(self._may_be_any[pick], np.maximum(np.abs(x), 1.0), 1.0)
+            if (np.abs(wider - times[pick]) <= AGREED * wider).all():
                 break
-            pick = pick[~wrong]  # a part that would have to be softer than rigid is rigid
+            times[pick] = wider
         square = float(G[-1, -1] - G[pick, -1] @ x)
         sign, size = np.linalg.slogdet(inner[P:, P:] / noise)
         del sign
-        return Solved(pick, x, max(square, 1e-12), float(size))
+        beyond = 4.0 * float(np.log(times[pick]).sum())  # by the width, and for being so rare
+        return Solved(pick, x, max(square, 1e-12), float(size) + beyond)
+
+    @cached_property
+    def _may_be_any(self) -> Mask:
+        """(P + K,) columns whose size may lie far beyond what is usual, each decade rarer."""
+        specs = [spec for each in self.candidates for spec in each.parameters]
+        return np.array(
+            [False] * self.base.shape[1] + [spec.customary is not None for spec in specs]
+        )
 
     def score(self, chosen: tuple[int, ...], noise: float) -> float:
         """Logarithm of the evidence, up to a constant of all models.

@@ -259,7 +259,8 @@ class PoseProblem(Problem):
         hardly tell of them would otherwise wander off, fit by fit.
         """
         effects = [self.model.parameters[k].effect for k in self.free]
-        kept = [not isinstance(effect, JointFrame | TransmissionError) for effect in effects]
+        told = JointFrame | TransmissionError | ToolOffset | MarkerShift
+        kept = [not isinstance(effect, told) for effect in effects]
         return np.asarray(self.start * kept)
 
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:
