@@ -65,9 +65,8 @@ def test_two_names_that_may_stand_for_each_other_may_both_be_named():
     )
     found = with_effects(settled, laws)
     evidence = Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})
-    both = [
-        Finding(each, (other.id,), (), evidence) for each, other in zip(laws, laws[::-1], strict=True)
-    ]
+    pairs = zip(laws, laws[::-1], strict=True)
+    both = [Finding(each, (other.id,), (), evidence) for each, other in pairs]
     wide = with_selection_uncertainty(found, both)
     assert [each.id for each in wide.model.effects][-2:] == [each.id for each in laws]
     assert np.isfinite(wide.selection_uncertainty).all()
