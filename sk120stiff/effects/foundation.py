@@ -99,7 +99,7 @@ class BaseRocking(StraightPart):
         Softest is a base on wheels, that the arm's own weight does not quite tip over.
         """
         own = compliances(
-            "xy", "stiffness_{}" + self._end, softest=3e4, customary=3e5, typical=1e7,
+            "xy", "stiffness_{}" + self._end, softest=1e4, customary=3e5, typical=1e7,
             scale=self.scale, meaning="against rocking about {} of the base frame",
         )  # fmt: skip
         return (*own, *([cross_term(self.scale, "x", "y", self._end)] if self.askew else []))
@@ -153,7 +153,7 @@ class BaseSliding(AxisByAxis):
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Stiffness against shifting along x, y and z."""
         return compliances(
-            "xyz", "stiffness_{}", softest=2e5, customary=2e6, typical=7e7, scale=self.scale,
+            "xyz", "stiffness_{}", softest=1e5, customary=2e6, typical=7e7, scale=self.scale,
             unit="N/m", meaning="against shifting along {} of the base frame",
         )  # fmt: skip
 

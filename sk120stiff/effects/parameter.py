@@ -45,11 +45,16 @@ class ParameterSpec:
     customary: float | None = None
 
     @property
+    def believed(self) -> float:
+        """Internal magnitude above which no cause is looked for, unless little else would do."""
+        return self.customary or self.plausible
+
+    @property
     def usual(self) -> float:
         """Standard size before anything is read: halfway, in decades, from typical to the largest
         that is customary.
         """
-        return float(np.sqrt(self.typical * (self.customary or self.plausible)))
+        return float(np.sqrt(self.typical * self.believed))
 
     def public(self, internal: float) -> float:
         """The value as people write it; infinite stiffness where nothing yields."""

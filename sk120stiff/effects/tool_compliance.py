@@ -34,11 +34,11 @@ class ToolCompliance(StraightPart):
         may carry.
         """
         turning = compliances(
-            "xyz", "stiffness_turn_{}", softest=3e2, customary=3e3, typical=2e5, scale=self.scale,
+            "xyz", "stiffness_turn_{}", softest=1e2, customary=3e3, typical=2e5, scale=self.scale,
             meaning="against turning about {} of the tool frame",
         )  # fmt: skip
         shifting = compliances(
-            "xyz", "stiffness_shift_{}", softest=2e5, customary=2e6, typical=5e7, scale=self.scale,
+            "xyz", "stiffness_shift_{}", softest=3e4, customary=2e6, typical=5e7, scale=self.scale,
             unit="N/m", meaning="against shifting along {} of the tool frame",
         )  # fmt: skip
         return (*turning, *shifting)

@@ -41,12 +41,14 @@ from sk120stiff.explain.select.best_selection import (
     held_against,
     of_readings,
 )
+from sk120stiff.explain.select.brought import brought
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import (
     Fit,
     as_seen,
     axes_of_joint_angles,
+    fit,
     gauges_as_displacements,
     refuse_unusable,
 )
@@ -277,7 +279,9 @@ def _selections(model: Model, measurements: Measurements, options: Options) -> T
     plain = tuple(effect for effect in candidates if not effect.random_effects)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
-    known: dict[tuple[Effect | None, bool], Linearised] = {}
+    first = fit(base_model, measurements, noise=noise_candidates(measurements)[0])
+    soft, at_first = brought(first, candidates, alpha=options.alpha, prior=options.prior)
+    known: dict[tuple[Effect | None, bool], Linearised | None] = {(None, True): at_first}
 
     def under(chosen: NoiseModel, beside: Effect | None = None) -> Selection:
         # Constants of single poses are what a shared zero brings; it need not have been separate.
@@ -291,6 +295,7 @@ def _selections(model: Model, measurements: Measurements, options: Options) -> T
             max_effects=options.max_effects,
             alpha=options.alpha,
             prior=options.prior,
+            soft=soft,
             near=known.get((beside, constants)),
         )
         if found.at_base is not None:

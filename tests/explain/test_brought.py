@@ -10,7 +10,7 @@ from tests.hidden.generator.sk120 import sk120
 from tests.hidden.generator.world import Cause
 
 OTHERS = ("joint_tilt", "link_bending", "link_torsion", "closure_coupling", "base_sliding")
-WHEELS = BaseRocking("base_link", {"x": 1 / 6e4, "y": 1 / 5e4})
+WHEELS = BaseRocking("base_link", {"x": 1 / 3e4, "y": 1 / 2e4})
 RUBBER = ToolCompliance("tool0", {"rx": 1 / 800.0, "ry": 1 / 500.0})
 
 

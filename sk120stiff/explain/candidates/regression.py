@@ -54,6 +54,7 @@ class Regression:
         sigma_known: The noise's size is known; else it is estimated by every model for itself.
         alpha: Probability at which a first effect may be named where nothing is missing.
         prior: Probabilities of effects that the user gave, by ``name`` or ``name:where``.
+        soft: Ids of candidates that may be softer than is customary, see `brought.py`.
         form: Its part in which model-form error outweighs the noise; None where there is none.
         linearised: What it was made from; its sensitivities may be those of another fit nearby.
     """
@@ -76,6 +77,7 @@ class Regression:
     sigma_known: bool
     alpha: float
     prior: Mapping[str, float]
+    soft: frozenset[str] = frozenset()
     form: FormRows | None = None
     linearised: Linearised | None = None
 
@@ -270,6 +272,7 @@ def regression_at(
     *,
     alpha: float,
     prior: Mapping[str, float] | None = None,
+    soft: frozenset[str] = frozenset(),
     near: Linearised | None = None,
 ) -> Regression:
     """Linearise the readings at a fit, over its own parameters and all candidates.
@@ -278,7 +281,7 @@ def regression_at(
         fit: A fitted model; effects of it that are not in `base_effects` count as candidates.
         candidates: Effects to consider besides; those that the model holds already are skipped.
         base_effects: Ids of the effects that belong to every model.
-        alpha, prior: See `Regression`; without `prior` the table of `priors.py` counts alone.
+        alpha, prior, soft: See `Regression`; without `prior` the table of `priors.py` counts alone.
         near: Sensitivities at another fit, see `linearised_at`.
     """
     problem = fit.problem
@@ -308,7 +311,11 @@ def regression_at(
     springs = [p.internal / p.spec.typical for p in fit.parameters if p.effect.joint_spring]
     softer = softness(np.array(springs))
     compliances = np.array([spec.reciprocal for spec in specs])
-    plausible = np.array([spec.plausible / spec.typical for spec in specs])
+    any_size = {*soft, *base_effects}
+    plausible = np.array([
+        (p.spec.plausible if p.effect.id in any_size else p.spec.believed) / p.spec.typical
+        for p in full.parameters
+    ])  # fmt: skip
     plausible[compliances] *= softer
     tied, sources, variants = _variants(chosen, columns, X)
     plain = {effect.id: effect for effect in candidates}
@@ -345,6 +352,7 @@ def regression_at(
         sigma_known=fit.sigma_known,
         alpha=alpha,
         prior=prior or {},
+        soft=soft,
         form=form_rows(fit, whole, y),
         linearised=linear,
     )

@@ -284,8 +284,9 @@ def _at_best(at: Fit, beside: Nuisance, candidates: Regression) -> float:
         return float(np.inf)
     ids = [effect.id for effect in base.model.effects]
     regression = regression_at(
-        base, candidates.candidates, ids, alpha=candidates.alpha, prior=candidates.prior
-    )
+        base, candidates.candidates, ids,
+        alpha=candidates.alpha, prior=candidates.prior, soft=candidates.soft,
+    )  # fmt: skip
     best = beam_search(regression, width=NARROW)[0]
     left = best.solved.rss / max(regression.rows - len(best.solved.columns), 1)
     return float(np.inf) if regression.sigma_known and left > LEFT else best.score + beside.price

@@ -131,8 +131,9 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
         if not any(counts):
             return [with_settled_sizes(base)] * len(counts), near
         regression = regression_at(
-            base, found.candidates, ids, alpha=alpha, prior=found.regression.prior, near=near
-        )
+            base, found.candidates, ids,
+            alpha=alpha, prior=found.regression.prior, soft=found.regression.soft, near=near,
+        )  # fmt: skip
         base, regression = with_own_sizes(base, regression)
         ranked = beam_search(regression, width=NARROW, max_effects=max(counts))
         return [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -76,6 +76,7 @@ def select(
     max_effects: int,
     alpha: float,
     prior: Mapping[str, float] | None = None,
+    soft: frozenset[str] = frozenset(),
     near: Linearised | None = None,
 ) -> Selection:
     """Settle on a set of effects under one noise model.
@@ -88,11 +89,13 @@ def select(
         max_effects: Largest number of them to add.
         alpha: Probability of naming something where nothing is missing.
         prior: Probabilities of effects that the user gave.
+        soft: Ids of effects that may be softer than is customary.
         near: Sensitivities at another fit of the base model.
     """
     base = fit(model, measurements, noise=noise)
     ids = tuple(effect.id for effect in model.effects)
-    regression = regression_at(base, candidates, ids, alpha=alpha, prior=prior, near=near)
+    asked = partial(regression_at, alpha=alpha, prior=prior, soft=soft)
+    regression = asked(base, candidates, ids, near=near)
     at_base = regression.linearised
     slow, certain = warm_ups(base.problem.load_cases), borne_out(measurements)
     outliers = outlying_rows(regression, base.problem.whitener, slow, certain)
@@ -101,7 +104,7 @@ def select(
         keep = np.ones(measurements.n_readings, dtype=bool)
         keep[rows] = False
         fitted = fit(model, measurements.select(keep), noise=noise)
-        return fitted, regression_at(fitted, candidates, ids, alpha=alpha, prior=prior)
+        return fitted, asked(fitted, candidates, ids)
 
     if len(outliers):
         base, regression = without(outliers)
@@ -153,7 +156,8 @@ def with_own_sizes(base: Fit, regression: Regression) -> tuple[Fit, Regression]:
     ids = [effect.id for effect in problem.model.effects]
     return again, regression_at(
         again, regression.candidates, ids,
-        alpha=regression.alpha, prior=regression.prior, near=regression.linearised,
+        alpha=regression.alpha, prior=regression.prior, soft=regression.soft,
+        near=regression.linearised,
     )  # fmt: skip
 
 
@@ -164,7 +168,7 @@ def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
     linear = found.regression
     regression = regression_at(
         final, found.candidates, ids,
-        alpha=linear.alpha, prior=linear.prior, near=linear.linearised,
+        alpha=linear.alpha, prior=linear.prior, soft=linear.soft, near=linear.linearised,
     )  # fmt: skip
     chosen = positions(regression, effects)
     score = score_set(regression, regression.sums(), chosen).score
@@ -302,8 +306,9 @@ def _settle(
         if number and set(effects) == set(before):  # what ranks higher has no fit
             break
         regression = regression_at(
-            final, candidates, ids, alpha=regression.alpha, prior=regression.prior
-        )
+            final, candidates, ids,
+            alpha=regression.alpha, prior=regression.prior, soft=regression.soft,
+        )  # fmt: skip
         if number and len(effects) >= max_effects and final.exceeds:
             break  # no set is enough: another will be looked for beside model-form error
     return final, regression, positions(regression, effects)

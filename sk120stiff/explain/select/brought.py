@@ -1,0 +1,77 @@
+"""What a user brought, much softer than is customary: a foundation on wheels, a tool on rubber.
+
+How soft a part of an arm may be, its maker's trade tells. What a user stands it on, or puts on its
+flange, may be softer by decades; but a cause of any size would stand for much of what every arm has
+beyond its laws. So it is looked for within what is customary, unless little else would do: its size
+lies beyond, and without that by far more is left, or it takes more causes to leave as little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from sk120stiff.effects import Effect
+from sk120stiff.errors import Refusal
+from sk120stiff.explain.candidates.linearised import Linearised
+from sk120stiff.explain.candidates.regression import Regression, regression_at
+from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.score import Scored
+from sk120stiff.explain.select.stepwise import laws_of, refit
+from sk120stiff.identify import Fit
+
+BY_FAR = 2.0  # times the squares that are left, within what is customary
+DECISIVE = 10.0  # difference of scores (BIC: Kass & Raftery 1995) that it takes besides
+NARROW = 4  # models kept at each size of the search
+MOST = 3  # effects of a model: the soft part, and what is seen beside it
+
+
+def brought(
+    base: Fit,
+    candidates: Sequence[Effect],
+    *,
+    alpha: float,
+    prior: Mapping[str, float] | None = None,
+) -> tuple[frozenset[str], Linearised | None]:
+    """Ids of those candidates that are softer than is customary, and sensitivities at the fit.
+
+    Args:
+        base: Fit of the base model.
+        candidates: Effects that may be missing.
+        alpha, prior: See `Regression`.
+    """
+    some = frozenset(e.id for e in candidates if any(spec.customary for spec in e.parameters))
+    ids = [effect.id for effect in base.model.effects]
+    asked = partial(regression_at, alpha=alpha, prior=prior)
+    usual = asked(base, candidates, ids)
+    near, at = usual.linearised, base
+    softer: frozenset[str] = frozenset()
+    for exact in (False, True):
+        wide = asked(at, candidates, ids, soft=some, near=usual.linearised)
+        best = _best(wide)
+        softer = some & {wide.candidates[e].id for e in best.effects if _beyond(usual, best, e)}
+        if exact or not softer:
+            break
+        try:  # where the base model has to do with springs alone, all of them look soft
+            at = refit(base, laws_of(wide, best))
+        except Refusal:
+            return frozenset(), near
+        usual = asked(at, candidates, ids)
+    if not softer:
+        return softer, near
+    within = _best(usual)
+    far = within.solved.rss > BY_FAR * best.solved.rss or len(within.effects) > len(best.effects)
+    return softer if far and within.score > best.score + DECISIVE else frozenset(), near
+
+
+def _best(regression: Regression) -> Scored:
+    return beam_search(regression, width=NARROW, max_effects=MOST)[0]
+
+
+def _beyond(usual: Regression, model: Scored, effect: int) -> bool:
+    """Is a value of an effect beyond what is believed of its like?"""
+    solved = model.solved
+    own = np.isin(solved.columns, usual.variants[effect][model.by_variant[effect]])
+    return bool((np.abs(solved.values) > usual.believed(solved))[own].any())
