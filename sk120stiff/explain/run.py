@@ -41,7 +41,7 @@ from sk120stiff.explain.select.best_selection import (
     held_against,
     of_readings,
 )
-from sk120stiff.explain.select.brought import brought
+from sk120stiff.explain.select.brought import brought, softer_than_customary
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import (
@@ -191,6 +191,7 @@ def explain_displacements(
             *replace(named, findings=findings).reasons,
             *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),
+            *softer_than_customary(final),
             *held_rigid(final),
             *mostly_parts(written),
             *_where_it_binds(found, options),

@@ -4,8 +4,10 @@ import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import Options
-from tests.explain.readings import answered, hidden
-from tests.hidden.generator.causes_elastic import BaseRocking, ToolCompliance
+from sk120stiff.explain.options import candidates_for
+from sk120stiff.explain.select.brought import brought
+from tests.explain.readings import answered, base_fit, hidden
+from tests.hidden.generator.causes_elastic import BaseRocking, JointTilt, ToolCompliance
 from tests.hidden.generator.sk120 import sk120
 from tests.hidden.generator.world import Cause
 
@@ -24,9 +26,29 @@ def test_it_is_named_with_its_size_and_springs_keep_theirs(cause: Cause, name: s
     options = Options(only=("base_rocking", "tool_compliance", *OTHERS))
     answer = answered(springs, hidden(cause, poses=12), options=options)
     assert [finding.effect.id for finding in answer.findings] == [name]
+    assert [
+        said for said in answer.unnamed if said.startswith(name) and "than is customary" in said
+    ]
     for spring, true in zip(answer.final.parameters, sk120().typical.joint.values(), strict=False):
         assert abs(spring.value - true) < 3.5 * spring.std
     soft = [p for p in answer.final.parameters if p.effect.id == name and p.internal > 1e-5]
     sizes = sorted(size for size in cause.sizes.values() if size)
     for found, true in zip(sorted(soft, key=lambda p: p.internal), sizes, strict=True):
         assert abs(found.internal - true) < 3.5 * found.internal_std
+
+
+@pytest.mark.parametrize(
+    ("cause", "name"),
+    [
+        (BaseRocking("base_link", {"x": 1e-6, "y": 1e-6}), "base_rocking:base_link"),
+        (ToolCompliance("tool0", {"rx": 1e-5, "ry": 2e-5}), "tool_compliance:tool0"),
+        (JointTilt("joint_2_l", {"first": 4e-7, "second": 0.0}), "joint_tilt:joint_2_l"),
+    ],
+)
+def test_what_is_customary_is_looked_for_within_that(cause: Cause, name: str) -> None:
+    springs = base_model(load_robot("motoman_sk120"))
+    assert springs is not None
+    readings = hidden(cause, poses=12)
+    candidates = candidates_for(springs, readings, Options())
+    assert brought(base_fit(readings), candidates, alpha=0.01)[0] == frozenset()
+    assert name in {each.id for each in candidates}

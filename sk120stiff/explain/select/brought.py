@@ -21,6 +21,7 @@ from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.score import Scored
 from sk120stiff.explain.select.stepwise import laws_of, refit
 from sk120stiff.identify import Fit
+from sk120stiff.model import Parameter
 
 BY_FAR = 2.0  # times the squares that are left, within what is customary
 DECISIVE = 10.0  # difference of scores (BIC: Kass & Raftery 1995) that it takes besides
@@ -75,3 +76,24 @@ def _beyond(usual: Regression, model: Scored, effect: int) -> bool:
     solved = model.solved
     own = np.isin(solved.columns, usual.variants[effect][model.by_variant[effect]])
     return bool((np.abs(solved.values) > usual.believed(solved))[own].any())
+
+
+def softer_than_customary(final: Fit) -> list[str]:
+    """That a named cause is so soft, one sentence for each, by its softest value."""
+    softest: dict[str, Parameter] = {}
+    for p in final.parameters:
+        if _times(p) > 1.0:
+            known = softest.get(p.effect.id)
+            if known is None or _times(p) > _times(known):
+                softest[p.effect.id] = p
+    return [
+        f"{p.name} = {p.value:.3g} {p.spec.unit} is softer than is customary, which is "
+        f"{p.spec.public(p.spec.customary or 0.0):.2g} and more: as on wheels or rubber. Little "
+        "else would explain these readings."
+        for p in softest.values()
+    ]
+
+
+def _times(p: Parameter) -> float:
+    """How many times softer than is customary a value is; 0 where that is no question."""
+    return p.internal / p.spec.customary if p.spec.customary else 0.0
