@@ -31,6 +31,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.elongation import Elongation
+from sk120stiff.effects.form import Form
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import REFERENCE_LENGTH, ParameterSpec
@@ -64,12 +65,11 @@ class Effect(ABC):
         joint_spring: Its one parameter is the stiffness of the actuated joint at which it acts
             (class attribute).
         rare: Few arms have what does it (class attribute).
-        of_gear: It is a law of a joint's gear: what one such law leaves over looks like another
-            (class attribute).
+        of_gear: A law of a joint's gear: what one leaves over looks like another (class attribute).
         twins: Names of effects that some experiments make one with this one, at the same place and
-            with either sign (class attribute). It is tried whether the experiment at hand does.
-        needs: What readings must hold for its law, in words (class attribute).
-        advice: What to do about it before anything else, a sentence (class attribute).
+            with either sign (class attribute).
+        needs, advice: What readings must hold for its law, in words; what to do about it before
+            anything else, a sentence (class attributes).
         calibrated: Its parameters are errors of an instrument that was calibrated: they are no
             larger than usual, whether readings tell them or not (class attribute).
         only_absolute: Positions show it, displacements hardly ever (class attribute).
@@ -205,6 +205,11 @@ class Effect(ABC):
     def nearby_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """Laws close to this one, once it is in the model; not beside model-form error."""
         return ()
+
+    @property
+    def form(self) -> Form[Effect] | None:
+        """A number of its law that may lie between those that are tried; None: there is none."""
+        return None
 
 
 class Moving(Effect):

@@ -11,16 +11,18 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two, softest_way
 from sk120stiff.effects.base import AxisByAxis, Effect
+from sk120stiff.effects.form import Form
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliances
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, two_digits
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.rotations import homogeneous
 
 BELOW = "_below_"
 PEDESTALS = (0.4, 0.8, 1.6)  # m: heights of what arms stand on, where it is not told
+REACH = (0.02, 4.0)  # m: within which such a height is sought
 FINER = (0.75, 0.87, 1.15, 1.3)  # times such a height
 
 
@@ -85,6 +87,21 @@ class BaseRocking(StraightPart):
             return ()
         heights = {round(factor * self.below, 3) for factor in FINER} - {self.below, *PEDESTALS}
         return tuple(replace(self, below=h) for h in sorted(heights))
+
+    @property
+    def form(self) -> Form[Effect] | None:
+        """See `Effect.form`: how far below it rocks [m]."""
+        return Form(self.below, self._rocking_about, self._depth) if self.below else None
+
+    def _rocking_about(self, below: float) -> BaseRocking:
+        """The same about a point so far below, to the millimetre."""
+        return replace(self, below=float(np.clip(round(below, 3), *REACH)))
+
+    def _depth(self, std: float) -> str:
+        return (
+            f"{self.id}: the point about which the base rocks lies {self.below:.3f} ± "
+            f"{two_digits(std)} m below; errors and intervals hold that."
+        )
 
     def told(self, values: Mapping[str, float]) -> str:
         """See `Effect.told`: about which axis it is softest, and about a point how far below."""

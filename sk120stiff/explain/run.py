@@ -42,6 +42,7 @@ from sk120stiff.explain.select.best_selection import (
     of_readings,
 )
 from sk120stiff.explain.select.brought import brought, softer_than_customary
+from sk120stiff.explain.select.form import beside_form, forms
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
 from sk120stiff.identify import (
@@ -171,8 +172,8 @@ def explain_displacements(
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
-    written = beside_parts(
-        _as_written(final, noise), model.catalogue, _no_other_parts(options, findings)
+    written = beside_form(
+        beside_parts(_as_written(final, noise), model.catalogue, _no_other_parts(options, findings))
     )
     answer = Explanation(
         verdict=verdict,
@@ -192,6 +193,7 @@ def explain_displacements(
             *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),
             *softer_than_customary(final),
+            *forms(final),
             *held_rigid(final),
             *mostly_parts(written),
             *_where_it_binds(found, options),

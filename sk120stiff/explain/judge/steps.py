@@ -17,6 +17,7 @@ from sk120stiff.explain.judge.goes_with import Foretold, foretold
 from sk120stiff.explain.judge.nuisance import nuisance_of
 from sk120stiff.explain.localise.suspects import suspect_named
 from sk120stiff.explain.select.beam import beam_search
+from sk120stiff.explain.select.form import from_there, with_best_form
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
 from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
@@ -174,7 +175,8 @@ def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]], about: Fit | None
     for effects in choices[:TRIED]:
         held = about is not None and set(effects) <= set(about.model.effects)
         try:
-            return with_settled_sizes(refit(base, effects, about if held else None))
+            found = refit(base, effects, about if held else None)
+            return with_settled_sizes(with_best_form(effects, found, from_there)[1])
         except Refusal:
             continue
     return with_settled_sizes(base)

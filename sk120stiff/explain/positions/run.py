@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -52,6 +52,7 @@ from sk120stiff.explain.positions.select.choose import (
     threshold,
 )
 from sk120stiff.explain.positions.select.linear import Linear, everything
+from sk120stiff.explain.select.form import beside_form, forms, with_best_form
 from sk120stiff.identify import refuse_for_positions, refuse_plan
 from sk120stiff.identify.positions.calibrate import (
     Calibration,
@@ -137,6 +138,7 @@ def explain_positions(
         seen, (linear, found, laws, hidden), final = final, about, again
     if (apart := _with_own_values(linear, found, final)) != found:
         found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
+    linear = _as_fitted(linear, found, final)
     tell("what is left", 0.85)
     final, guess, guessed = with_model_form(final), None, np.nan
     suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
@@ -160,12 +162,13 @@ def explain_positions(
                 )
     final = beside_parts(beside_laws(final, linear, found.order, laws), catalogue, options.exclude)
     final = replace(
-        final,
+        beside_form(final),
         notes=(
             *hangs,
             *pushed,
             *jointly,
             *final.notes,
+            *forms(final),
             *pounds(final),
             *([] if pushed else creeping(final, readings)),
             *balancing(final),
@@ -278,17 +281,21 @@ def _exactly(
     than to first order, the values found so are another start.
     """
     picked = _picked(linear, found)
+
+    def again_with(model: Model, effects: Sequence[Effect], _before: Calibration) -> Calibration:
+        return refined(base, effects, readings, model, catalogue)
+
     final = refined(base, picked, readings, seen.model, catalogue)
     noise = linear.noise(found.order)
     foretold = linear.gap(found.order, noise, held_out=False)
     foretold = seen.problem.of_channels.undo(foretold)
     if _left(final) <= MORE * rms(foretold):
-        return final
+        return with_best_form(picked, final, again_with)[1]
     known = linear.values(found.order, noise)
     wide = final.model
     values = [known.get(p.name, p.internal) for p in with_values_of(wide, seen.model).parameters]
     again = refined(base, picked, readings, wide.with_values(np.array(values)), catalogue)
-    return min(final, again, key=_left)
+    return with_best_form(picked, min(final, again, key=_left), again_with)[1]
 
 
 def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> bool:
@@ -302,6 +309,17 @@ def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> boo
         gain = 2.0 * (again.log_likelihood - before.log_likelihood)
     price = (len(again.x) - len(before.x)) * np.log(numbers)
     return bool(gain - price < -2.0 * threshold(linear))
+
+
+def _as_fitted(linear: Linear, found: Chosen, final: Calibration) -> Linear:
+    """The chosen by the laws that were fitted, whose forms lie between those that were tried."""
+    fitted = {effect.id: effect for effect in final.model.effects}
+    laws = {e: fitted.get(linear.candidates[e].id) for e in found.order}
+    candidates = tuple(
+        law if (law := laws.get(e)) is not None and law.form is not None else each
+        for e, each in enumerate(linear.candidates)
+    )
+    return replace(linear, candidates=candidates)
 
 
 def _left(found: Calibration) -> float:

@@ -16,6 +16,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search, exchanged
+from sk120stiff.explain.select.form import from_there, with_best_form
 from sk120stiff.explain.select.outliers import outlying_rows, standing_apart, still_outlying
 from sk120stiff.explain.select.own_sizes import own_sizes, price_of_factors
 from sk120stiff.explain.select.score import Scored, score_set
@@ -329,7 +330,8 @@ def _first_that_fits(
             continue
         effects = laws_of(regression, model)
         try:
-            return effects, refit(base, effects, near if near is not base else None)
+            found = refit(base, effects, near if near is not base else None)
+            return with_best_form(effects, found, from_there)
         except Refusal:
             refused += 1
             if refused >= TRIED:  # what is so large does not converge, whatever is in it

@@ -15,6 +15,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Effect, Elastic, LoadError, Weighing
+from sk120stiff.effects.foundation import BaseRocking
 from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 
 WIDENED = 6  # rounds in which a prior and the size under it come to agree
@@ -208,11 +209,15 @@ class Linear:
 
     @cached_property
     def _may_be_any(self) -> Mask:
-        """(P + K,) columns whose size may lie far beyond what is usual, each decade rarer."""
-        specs = [spec for each in self.candidates for spec in each.parameters]
-        return np.array(
-            [False] * self.base.shape[1] + [spec.customary is not None for spec in specs]
-        )
+        """(P + K,) columns whose size may lie far beyond what is usual, each decade rarer.
+
+        Those of a foundation: a tool so soft looks like a mass that hangs elsewhere than stated.
+        """
+        out = [False] * self.base.shape[1]
+        for each in self.candidates:
+            foundation = each.place == BaseRocking.place
+            out += [foundation and spec.customary is not None for spec in each.parameters]
+        return np.array(out)
 
     def score(self, chosen: tuple[int, ...], noise: float) -> float:
         """Logarithm of the evidence, up to a constant of all models.
