@@ -41,6 +41,7 @@ KNOWN = 3.0  # no arm is so many times softer or stiffer than the springs identi
 CERTAIN = 200.0  # no arm is so much softer or stiffer than another; a unit is
 BEYOND = 1.3  # times softer or stiffer than usual for its size, from where on it is told
 BROUGHT = ("base_rocking", "base_sliding", "tool_compliance")  # not of the arm's maker
+MOST_UNITS = 6  # that are listed: a usual band spans two decades
 ALIKE = 0.3  # share of the readings' squares that one factor must explain to say anything
 UNITS = (
     (4.448, "forces in lbf labelled N", "forces in N labelled lbf"),
@@ -191,7 +192,7 @@ def _doubt(said: str, times: float, low: float, high: float) -> Scale | None:
         for unit, soft, stiff in UNITS
     }
     likely = [words for words in sorted(off, key=lambda w: off[w]) if off[words] < np.log(reach)]
-    guess = f" Likely: {'; or '.join(likely[:4])}." if likely else ""
+    guess = f" Likely: {'; or '.join(likely[:MOST_UNITS])}." if likely else ""
     return Scale(
         f"{said}: check the units of displacement and force.{guess} All springs together, the "
         "force's scale and the reading's scale are one number to these readings: which of them is "

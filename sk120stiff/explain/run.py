@@ -9,7 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
+from sk120stiff.data_checks import (
+    refuse_slips,
+    scale_doubt,
+    without_copies,
+    without_stuck,
+    without_wild,
+)
 from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.advise.best_guess import contenders
@@ -136,6 +142,7 @@ def explain_displacements(
     _refuse_unexplainable(model, measurements)
     sound = _sound(model, as_seen(model.robot, measurements))
     used, rows = sound.masked(), np.flatnonzero(sound.use)
+    scale = scale_doubt(model, sound)
     tell("searching the catalogue", 0.05)
     under = _selections(model, used, options)
     found, noise = best_selection(used, under)
@@ -198,6 +205,7 @@ def explain_displacements(
             *mostly_parts(written),
             *_where_it_binds(found, options),
         ),
+        units=None if scale is None else scale.sentence,
         beyond=None if beyond is None else beyond.id,
         limits=options.limits,
         suspects=suspects,

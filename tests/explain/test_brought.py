@@ -4,8 +4,11 @@ import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import Options
+from sk120stiff.explain.answer.document import verdict_document
+from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.options import candidates_for
 from sk120stiff.explain.select.brought import brought
+from tests.data_checks.readings import ARMS, loads_as_if
 from tests.explain.readings import answered, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, JointTilt, ToolCompliance
 from tests.hidden.generator.sk120 import sk120
@@ -52,3 +55,14 @@ def test_what_is_customary_is_looked_for_within_that(cause: Cause, name: str) ->
     candidates = candidates_for(springs, readings, Options())
     assert brought(base_fit(readings), candidates, alpha=0.01)[0] == frozenset()
     assert name in {each.id for each in candidates}
+
+
+@pytest.mark.parametrize("factor", [1.0, 9.807])
+def test_units_in_doubt_come_before_names(factor: float) -> None:
+    arm = ARMS["sk120"]()
+    readings = loads_as_if(arm.readings, factor)
+    answer = answered(arm.model, readings, options=Options(only=("joint_tilt",)))
+    first = "Make sure of the units before anything else"
+    assert next_step(answer).startswith(first) == (factor != 1.0)
+    assert (answer.units is not None) == (factor != 1.0)
+    assert verdict_document(answer, readings)["units"] == answer.units

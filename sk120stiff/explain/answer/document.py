@@ -60,6 +60,7 @@ def verdict_document(
         "budget": share_entries(answer.budget),
         "budget_joints": share_entries(answer.joints_budget),
         "budget_task": task_document(answer.task),
+        "units": answer.units,
         "where": list(answer.where),
         "suspects": [
             {"name": suspect.id, "heldout_gain_um": micrometres(suspect.heldout_gain)}

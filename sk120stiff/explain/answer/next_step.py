@@ -37,6 +37,7 @@ def next_step(answer: Explanation) -> str:
     said = {"none": _none, "named": _named, "ambiguous": _ambiguous, "outside": _outside}
     return " ".join(
         [
+            *_of_the_units(answer),
             *_of_the_file(answer),
             *said[answer.verdict](answer),
             *filter(None, [steady_offsets(answer)]),
@@ -45,6 +46,16 @@ def next_step(answer: Explanation) -> str:
             *_of_the_slips(answer),
         ]
     )
+
+
+def _of_the_units(answer: Explanation) -> list[str]:
+    """That everything yields too much or too little, before any name or value is believed."""
+    if answer.units is None:
+        return []
+    return [
+        "Make sure of the units before anything else: a wrong one makes names and values. "
+        f"{answer.units[0].upper()}{answer.units[1:]}."
+    ]
 
 
 def _of_the_file(answer: Explanation) -> list[str]:
