@@ -139,7 +139,7 @@ def parts(answer: Explanation, out: Path, *, report: object = None) -> list[obje
     if answer.suspects:
         lead = "Best, but not confirmed" if answer.unnamed else "Nearest, but not it"
         shown.append(f"{lead}: {', '.join(map(_gain, answer.suspects))}.")
-    shown += answer.unnamed
+    shown += (*answer.notes, *answer.unnamed)
     shown += unseen_sentences(answer.final)
     if answer.findings and answer.adequacy.lacking:
         shown.append("That is not all: more is left than the noise makes.")

@@ -15,14 +15,21 @@ from sk120stiff.effects.parameter import ParameterSpec, compliance
 from sk120stiff.errors import two_digits
 
 CROSS = "cross_stiffness"
+CUSTOMARY = 6e5  # N·m/rad: the softest on an arm of `REFERENCE_LENGTH`
 COUPLINGS = ((0, 1, 2),)  # see `Effect.couplings`
 
 
-def cross_term(scale: float, first: str, second: str, end: str = "") -> ParameterSpec:
-    """The third parameter, of an arm of a length over `REFERENCE_LENGTH`."""
+def cross_term(
+    scale: float, first: str, second: str, end: str = "", softest: float | None = None
+) -> ParameterSpec:
+    """The third parameter, of an arm of a length over `REFERENCE_LENGTH`.
+
+    `softest`: see `compliance`, where it lies beyond what is customary.
+    """
     return compliance(
         f"{CROSS}{end}",
-        softest=6e5,
+        softest=softest or CUSTOMARY,
+        customary=CUSTOMARY if softest else None,
         typical=2e7,
         scale=scale,
         meaning=f"moment about {first} over the turn about {second} that it brings, and the other "

@@ -208,7 +208,7 @@ class Effect(ABC):
 
     @property
     def form(self) -> Form[Effect] | None:
-        """A number of its law that may lie between those that are tried; None: there is none."""
+        """Numbers of its law that may lie between those that are tried; None: it has none."""
         return None
 
 

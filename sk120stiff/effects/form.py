@@ -1,8 +1,8 @@
-"""A number of a law's form: how far below a base rocks, say."""
+"""Numbers of a law's form: how far below a base rocks, say."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -11,14 +11,16 @@ Law = TypeVar("Law", covariant=True)
 
 @dataclass(frozen=True)
 class Form(Generic[Law]):
-    """A number of a law that may lie anywhere, though a search tries few.
+    """Numbers of a law that may lie anywhere, though a search tries few.
 
     Attributes:
-        value: The number.
-        law: The law with another one, as near to it as names of parameters tell.
-        sentence: What it is, given its standard error.
+        values: The numbers; there may be none yet.
+        law: The law with others, as near to them as names of parameters tell.
+        sentence: What they are, given their standard errors; empty where there are none.
+        wider: The law with more such numbers, which then have to earn their place; None: no other.
     """
 
-    value: float
-    law: Callable[[float], Law]
-    sentence: Callable[[float], str]
+    values: tuple[float, ...]
+    law: Callable[[Sequence[float]], Law]
+    sentence: Callable[[Sequence[float]], str]
+    wider: Law | None = None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -16,13 +17,17 @@ from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec, compliances
-from sk120stiff.errors import InputError, two_digits
+from sk120stiff.errors import InputError, listed, two_digits
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.rotations import homogeneous
 
 BELOW = "_below_"
 PEDESTALS = (0.4, 0.8, 1.6)  # m: heights of what arms stand on, where it is not told
-REACH = (0.02, 4.0)  # m: within which such a height is sought
+LOWEST, REACH = 0.02, 4.0  # m: within which such a height is sought
+MINUS = "minus_"
+POINT = re.compile(
+    rf"((?:{MINUS})?\d+)(?:_x_((?:{MINUS})?\d+)_y_((?:{MINUS})?\d+))?"
+)  # behind _below_
 FINER = (0.75, 0.87, 1.15, 1.3)  # times such a height
 
 
@@ -38,10 +43,13 @@ class BaseRocking(StraightPart):
     Attributes:
         askew: There is a cross term.
         below: Height of the foundation point over that about which the base rocks [m].
+        beside: How far that lies along x and y of the base frame [m]; None: below the foundation
+            point.
     """
 
     askew: bool = False
     below: float = 0.0
+    beside: tuple[float, float] | None = None
     name: ClassVar[str] = "base_rocking"
     place: ClassVar[str] = "the base frame"
     equation: ClassVar[str] = "turn = moment / K, about x and about y"
@@ -52,7 +60,8 @@ class BaseRocking(StraightPart):
     also: ClassVar[str] = (
         f"with {CROSS}, where the stiff direction lies askew of the axes; all three with {BELOW} "
         "and a number behind their names, as stiffness_x_below_800: about a point so many "
-        f"millimetres below, as on a pedestal; {ALSO}"
+        "millimetres below, as on a pedestal, and stiffness_x_below_800_x_150_y_minus_100: about "
+        f"one that lies beside, as on a vehicle; {ALSO}"
     )
     yields_under: ClassVar[str] = "tips the base"
 
@@ -64,15 +73,25 @@ class BaseRocking(StraightPart):
             InputError: Names that tell of points at several heights.
         """
         found = super().at(robot, where, options)
-        heights = {name.partition(BELOW)[2] for name in options.shape} or {""}
-        if len(heights) > 1 or not all(each.isdecimal() for each in heights - {""}):
+        points = {name.partition(BELOW)[2] for name in options.shape} or {""}
+        told = [POINT.fullmatch(each) for each in points - {""}]
+        if len(points) > 1 or None in told:
             raise InputError(
-                f"{where} rocks about one point, and parameters say {sorted(heights)}",
-                remedy=f"Write the same whole number of millimetres behind {BELOW} in all names.",
+                f"{where} rocks about one point, and parameters say {sorted(points)}",
+                remedy=f"Write the same whole numbers of millimetres behind {BELOW} in all names, "
+                "as 800, or 800_x_150_y_minus_100.",
             )
-        below = float(heights.pop() or 0.0) / 1e3
-        askew = any(name.startswith(CROSS) for name in options.shape)
-        return replace(found, askew=askew, below=below) if isinstance(found, cls) else found
+        if not isinstance(found, cls):
+            return found
+        found = replace(found, askew=any(name.startswith(CROSS) for name in options.shape))
+        for point in filter(None, told):
+            below, x, y = (
+                None if each is None else float(each.replace(MINUS, "-")) / 1e3
+                for each in point.groups()
+            )
+            beside = None if x is None or y is None else (x, y)
+            found = replace(found, below=below or 0.0, beside=beside)
+        return found
 
     def other_laws(self, load_cases: LoadCases) -> tuple[Effect, ...]:
         """With a cross term, about points below too, and out of proportion."""
@@ -90,24 +109,42 @@ class BaseRocking(StraightPart):
 
     @property
     def form(self) -> Form[Effect] | None:
-        """See `Effect.form`: how far below it rocks [m]."""
-        return Form(self.below, self._rocking_about, self._depth) if self.below else None
+        """See `Effect.form`: how far below it rocks, and how far beside the axis [m]."""
+        if self.beside is not None:
+            return Form((self.below, *self.beside), self._rocking_about, self._pivot)
+        wider = replace(self, askew=True, beside=(0.0, 0.0))
+        return Form((self.below,) if self.below else (), self._rocking_about, self._pivot, wider)
 
-    def _rocking_about(self, below: float) -> BaseRocking:
-        """The same about a point so far below, to the millimetre."""
-        return replace(self, below=float(np.clip(round(below, 3), *REACH)))
+    def _rocking_about(self, at: Sequence[float]) -> BaseRocking:
+        """The same about another point, to the millimetre."""
+        below, *beside = (round(float(value), 3) for value in at)
+        if self.beside is None:
+            return replace(self, below=float(np.clip(below, LOWEST, REACH)))
+        return replace(
+            self, below=float(np.clip(below, -REACH, REACH)), beside=(beside[0], beside[1])
+        )
 
-    def _depth(self, std: float) -> str:
+    def _pivot(self, std: Sequence[float]) -> str:
+        if not len(std):
+            return ""
+        numbers = zip((self.below, *(self.beside or ())), std, strict=True)
+        where = [f"{value:.3f} ± {two_digits(error)} m" for value, error in numbers]
+        aside = "" if self.beside is None else f", at x = {where[1]} and y = {where[2]}"
         return (
-            f"{self.id}: the point about which the base rocks lies {self.below:.3f} ± "
-            f"{two_digits(std)} m below; errors and intervals hold that."
+            f"{self.id}: the point about which the base rocks lies {where[0]} below{aside}; errors "
+            "and intervals hold that."
         )
 
     def told(self, values: Mapping[str, float]) -> str:
-        """See `Effect.told`: about which axis it is softest, and about a point how far below."""
+        """See `Effect.told`: about which axis it is softest, and about which point."""
         way = softest_way([*values.values()], "x", "y") if self.askew else ""
-        below = f" about a point {self.below:.2g} m below" if self.below else ""
-        return f"The base rocks on its foundation{below}{f': {way}' if way else ''}."
+        about = [f"{self.below:.2g} m below"] if self.below else []
+        if self.beside is not None:
+            about += [
+                f"{value:.2g} m along {axis}" for axis, value in zip("xy", self.beside, strict=True)
+            ]
+        point = f" about a point {listed(about)}" if about else ""
+        return f"The base rocks on its foundation{point}{f': {way}' if way else ''}."
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
@@ -119,7 +156,10 @@ class BaseRocking(StraightPart):
             "xy", "stiffness_{}" + self._end, softest=1e4, customary=3e5, typical=1e7,
             scale=self.scale, meaning="against rocking about {} of the base frame",
         )  # fmt: skip
-        return (*own, *([cross_term(self.scale, "x", "y", self._end)] if self.askew else []))
+        return (
+            *own,
+            *([cross_term(self.scale, "x", "y", self._end, softest=2e4)] if self.askew else []),
+        )
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:
@@ -128,7 +168,12 @@ class BaseRocking(StraightPart):
 
     @property
     def _end(self) -> str:
-        return f"{BELOW}{1e3 * self.below:.0f}" if self.below else ""
+        if self.beside is None:
+            return f"{BELOW}{1e3 * self.below:.0f}" if self.below else ""
+        below, x, y = (
+            f"{1e3 * value:.0f}".replace("-", MINUS) for value in (self.below, *self.beside)
+        )
+        return f"{BELOW}{below}_x_{x}_y_{y}"
 
     @property
     def couplings(self) -> tuple[tuple[int, int, int], ...]:
@@ -137,7 +182,7 @@ class BaseRocking(StraightPart):
 
     def virtual_joints(self, robot: Robot) -> tuple[VirtualJoint, ...]:
         """Two joints before all others."""
-        at = homogeneous(robot.foundation - np.array([0.0, 0.0, self.below]))
+        at = homogeneous(robot.foundation + np.array([*(self.beside or (0.0, 0.0)), -self.below]))
         return tuple(
             VirtualJoint(f"{self.id}.{label}{self._end}", -1, at, np.eye(3)[k])
             for k, label in enumerate("xy")

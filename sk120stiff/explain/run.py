@@ -179,9 +179,10 @@ def explain_displacements(
     beyond = implausible(found) if remainder.significant else None
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
-    written = beside_form(
-        beside_parts(_as_written(final, noise), model.catalogue, _no_other_parts(options, findings))
+    written = beside_parts(
+        _as_written(final, noise), model.catalogue, _no_other_parts(options, findings)
     )
+    written = beside_form(written, effects)
     answer = Explanation(
         verdict=verdict,
         findings=findings,
@@ -199,11 +200,13 @@ def explain_displacements(
             *replace(named, findings=findings).reasons,
             *(part.sentence() for part in together if part.probability > WORTH_A_SENTENCE),
             *([] if beyond is None else [beyond.sentence]),
-            *softer_than_customary(final),
-            *forms(final),
             *held_rigid(final),
             *mostly_parts(written),
             *_where_it_binds(found, options),
+        ),
+        notes=(
+            *softer_than_customary(final, found.regression.soft),
+            *forms(final, effects),
         ),
         units=None if scale is None else scale.sentence,
         beyond=None if beyond is None else beyond.id,

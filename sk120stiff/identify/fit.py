@@ -49,8 +49,8 @@ class Fit:
         spread: Noise seen over noise assumed, where a robust fit found it without its outliers.
         inflation: Variance of the estimates over that of least squares with the same weights
             (robust fits).
-        selection_uncertainty, left_out, omitted, foreign, parts: What moves the estimates beside
-            the noise, see `Moves`; None: nothing of the kind.
+        selection_uncertainty, left_out, omitted, foreign, parts, by_form: What moves the estimates
+            beside the noise, see `Moves`; None: nothing of the kind.
         parts_by: (P_free,) the part that adds most to each, ``name:where``; empty: none counts.
 
     Examples:
@@ -77,6 +77,7 @@ class Fit:
     omitted: Array | None = None
     foreign: Array | None = None
     parts: Array | None = None
+    by_form: Array | None = None
     parts_by: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
@@ -291,7 +292,9 @@ class Fit:
     def moves(self) -> Moves:
         """What is not of the readings' noise."""
         models, each = self.selection_uncertainty, self.left_out
-        return Moves.of(len(self.x), models, each, self.omitted, self.foreign, self.parts)
+        return Moves.of(
+            len(self.x), models, each, self.omitted, self.foreign, self.parts, self.by_form
+        )
 
     @property
     def unit(self) -> float:

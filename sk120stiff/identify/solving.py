@@ -159,6 +159,7 @@ def widened_as(found: Fit, other: Fit) -> Fit:
             omitted=other.omitted,
             foreign=other.foreign,
             parts=other.parts,
+            by_form=other.by_form,
             parts_by=other.parts_by,
         )
     )

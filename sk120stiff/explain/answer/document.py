@@ -67,6 +67,7 @@ def verdict_document(
             for suspect in answer.suspects
         ],
         "best_guess": BEST_GUESS if answer.guess is not None else None,
+        "notes": list(answer.notes),
         "not_named": list(answer.unnamed),
         "known_together": list(answer.known_together),
         "limits": list(answer.limits),

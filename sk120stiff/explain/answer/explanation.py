@@ -47,6 +47,7 @@ class Explanation:
         adequacy: Tests of what the final model leaves over.
         remainder: Its size, as model-form error beside the noise.
         unnamed: What fitted but is not named, and why, in sentences.
+        notes: What else is told of the named causes, in sentences.
         units: Why units of force or displacement are in doubt, a sentence; None: they are not.
         beyond: What would explain by far the most, were its size to be believed; None: nothing.
         limits: How the user limited the search, in sentences; empty if not at all.
@@ -85,6 +86,7 @@ class Explanation:
     adequacy: Adequacy
     remainder: Remainder
     unnamed: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     units: str | None = None
     beyond: str | None = None
     limits: tuple[str, ...] = ()

@@ -21,6 +21,7 @@ from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import unit
 from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
 from sk120stiff.explain.judge.remainder import remainder_of
+from sk120stiff.explain.select.form import alike_but_for_form
 from sk120stiff.explain.select.own_sizes import price_of_factors, with_settled_sizes
 from sk120stiff.explain.select.score import score_set
 from sk120stiff.explain.select.stepwise import Selection, refit
@@ -122,6 +123,8 @@ def _other_laws(found: Selection, effect: int) -> list[Effect]:
         other = score_set(
             regression, sums, now.effects, start=now.by_variant | {effect: k}, only=()
         )
+        if alike_but_for_form(law, laws[0]):
+            continue  # what its numbers are known to counts by itself
         if own < _quantities(law) and other.score > now.score + REFUTED:
             continue
         fits[law] = min(other.solved.rss, fits.get(law, np.inf))

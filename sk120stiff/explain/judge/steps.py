@@ -173,7 +173,8 @@ def _first_fit(base: Fit, choices: Sequence[Sequence[Effect]], about: Fit | None
     Values are sought about those of a fit to the same readings, if there is one with such effects.
     """
     for effects in choices[:TRIED]:
-        held = about is not None and set(effects) <= set(about.model.effects)
+        ids = {effect.id for effect in effects}
+        held = about is not None and ids <= {effect.id for effect in about.model.effects}
         try:
             found = refit(base, effects, about if held else None)
             return with_settled_sizes(with_best_form(effects, found, from_there)[1])

@@ -162,13 +162,13 @@ def explain_positions(
                 )
     final = beside_parts(beside_laws(final, linear, found.order, laws), catalogue, options.exclude)
     final = replace(
-        beside_form(final),
+        beside_form(final, _picked(linear, found)),
         notes=(
             *hangs,
             *pushed,
             *jointly,
             *final.notes,
-            *forms(final),
+            *forms(final, _picked(linear, found)),
             *pounds(final),
             *([] if pushed else creeping(final, readings)),
             *balancing(final),

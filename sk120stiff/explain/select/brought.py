@@ -8,7 +8,7 @@ lies beyond, and without that by far more is left, or it takes more causes to le
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -78,11 +78,11 @@ def _beyond(usual: Regression, model: Scored, effect: int) -> bool:
     return bool((np.abs(solved.values) > usual.believed(solved))[own].any())
 
 
-def softer_than_customary(final: Fit) -> list[str]:
-    """That a named cause is so soft, one sentence for each, by its softest value."""
+def softer_than_customary(final: Fit, soft: Collection[str]) -> list[str]:
+    """That causes that had to be so `soft` are, one sentence for each, by its softest value."""
     softest: dict[str, Parameter] = {}
     for p in final.parameters:
-        if _times(p) > 1.0:
+        if p.effect.id in soft and _times(p) > 1.0:
             known = softest.get(p.effect.id)
             if known is None or _times(p) > _times(known):
                 softest[p.effect.id] = p

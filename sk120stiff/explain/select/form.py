@@ -1,4 +1,4 @@
-"""Numbers of a law's form that lie between those that are tried, as how far below a base rocks.
+"""Numbers of a law's form between those that are tried, as how far below a base rocks.
 
 The search tries a few. Once one of them is chosen, it goes to where the readings want it: readings
 are nearly linear in it too, so a step to the best of it and of all values together is soon there.
@@ -7,7 +7,7 @@ What it is known to moves the values with it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -19,30 +19,42 @@ from sk120stiff.effects.form import Form
 from sk120stiff.errors import Refusal
 from sk120stiff.identify import Fit, solve_near
 from sk120stiff.identify.written import with_values
-from sk120stiff.model import Model
+from sk120stiff.model import Model, Parameter
 
 F = TypeVar("F", bound=Fit)
-STEP = 0.02  # share of the number over which the derivative is taken
-ROUNDS = 5  # of steps
-FARTHEST = 0.3  # share of the number that one step changes at most
+ROUNDED = 1e-3  # m, or another unit: to which names of parameters tell such a number
+STEP = 0.01  # m, or another unit: over which the derivative is taken
+ROUNDS = 6  # of steps
+FARTHEST = 0.3  # m, or another unit: what one step changes at most
+DECISIVE = 10.0  # fall of -2 ln L beside the price of its numbers, for which a wider form is taken
 NEAR = 0.02  # standard errors from the best, from which on no step is worth while
 
 
 @dataclass(frozen=True, eq=False)
 class Told:
-    """A number of a law's form, as far as readings tell it.
+    """The numbers of a law's form, as far as readings tell them.
 
     Attributes:
-        form: The number, and its law.
-        step: How far off the best value lies to first order.
-        std: Standard error.
-        moves: (P_free,) what the estimates change per unit of it.
+        form: The k numbers, and their law.
+        step: (k,) how far off the best values lie to first order.
+        covariance: (k, k) of them.
+        moves: (P_free, k) what the estimates change per unit of each.
     """
 
     form: Form[Effect]
-    step: float
-    std: float
+    step: Array
+    covariance: Array
     moves: Array
+
+    @property
+    def worth(self) -> float:
+        """Fall of -2 ln L that the best values promise, to first order."""
+        return float(self.step @ np.linalg.pinv(self.covariance, hermitian=True) @ self.step)
+
+    @property
+    def std(self) -> Array:
+        """(k,) standard errors."""
+        return np.sqrt(np.diag(self.covariance))
 
 
 def with_best_form(
@@ -56,74 +68,137 @@ def with_best_form(
         refit: Fits a model, of which these are what joined, from the values of a fit.
     """
     out = list(effects)
-    for k, effect in enumerate(effects):
-        for _ in range(ROUNDS if effect.form is not None else 0):
-            told = told_form(found, out[k])
-            if told is None or abs(told.step) <= NEAR * told.std:
-                break
-            now = told.form.value
-            step = float(np.clip(told.step, -FARTHEST * now, FARTHEST * now))
-            other = told.form.law(now + step)
-            if other == out[k]:
-                break
-            tried = [*out[:k], other, *out[k + 1 :]]
-            try:
-                again = refit(_by_law(found.model, out[k], other), tried, found)
-            except Refusal:
-                break
-            if again.log_likelihood < found.log_likelihood:
-                break
-            out, found = tried, again
+    for k in range(len(out)):
+        out, found = _settled(out, k, found, refit)
+        form = out[k].form
+        if form is None or form.wider is None:
+            continue
+        more, again = out, found
+        try:
+            more = [*out[:k], form.wider, *out[k + 1 :]]
+            again = refit(_by_law(found.model, out[k], form.wider), more, found)
+        except Refusal:
+            continue
+        numbers = _numbers(more[k]) - _numbers(out[k])
+        price = numbers * float(np.log(len(found.residual))) + DECISIVE
+        told = told_form(again, more[k])
+        if told is None or told.worth < price:
+            continue
+        more, again = _settled(more, k, again, refit)
+        if 2.0 * (again.log_likelihood - found.log_likelihood) > price:
+            out, found = more, again
     return out, found
+
+
+def _settled(
+    effects: list[Effect], k: int, found: F, refit: Callable[[Model, Sequence[Effect], F], F]
+) -> tuple[list[Effect], F]:
+    """One law with the best numbers that its form has."""
+    for _ in range(ROUNDS):
+        told = told_form(found, effects[k])
+        if told is None or (np.abs(told.step) <= NEAR * told.std).all():
+            break
+        step = np.clip(told.step, -FARTHEST, FARTHEST)
+        other = told.form.law([*(np.array(told.form.values) + step)])
+        if other == effects[k]:
+            break
+        tried = [*effects[:k], other, *effects[k + 1 :]]
+        try:
+            again = refit(_by_law(found.model, effects[k], other), tried, found)
+        except Refusal:
+            break
+        if again.log_likelihood < found.log_likelihood:
+            break
+        effects, found = tried, again
+    return effects, found
+
+
+def _numbers(effect: Effect) -> int:
+    """How many numbers a law has that readings have to tell."""
+    return len(effect.parameters) + (0 if effect.form is None else len(effect.form.values))
 
 
 def from_there(model: Model, effects: Sequence[Effect], found: Fit) -> Fit:
     """The fit of a model about the values of another, as `with_best_form` asks for it."""
     del effects
-    return solve_near(replace(found.problem, model=model), found.x)
+    problem = replace(found.problem, model=model)
+    return solve_near(problem, model.values[problem.free] / problem.scale)
 
 
 def told_form(found: Fit, effect: Effect) -> Told | None:
     """What a fit tells of the form of one of its laws; None where it does not."""
     form = effect.form
-    if form is None or not np.isfinite(found.unit):
+    if form is None or not form.values or not np.isfinite(found.unit):
         return None
-    laws = [form.law((1.0 + share) * form.value) for share in (STEP, -STEP)]
-    ends = [law.form.value for law in laws if law.form is not None]
-    ahead, behind = (_residual(found, effect, law) for law in laws)
-    column = (ahead - behind) / max(ends[0] - ends[-1], 1e-300)
+    try:
+        columns = np.column_stack([_slope(found, effect, form, k) for k in range(len(form.values))])
+    except Refusal:
+        return None
     moving = ~found.at_bound
     J, drawn = found.jacobian[:, moving], np.diag(1.0 / found.problem.span[moving])
-    rows = np.vstack([J, drawn])
-    own = np.linalg.pinv(rows)[:, : len(J)]
-    along = -own @ column  # so values move to make up for it
-    beyond = column + J @ along
-    seen = float(beyond @ beyond)
-    if seen <= 0.0:
+    own = np.linalg.pinv(np.vstack([J, drawn]))[:, : len(J)]
+    along = -own @ columns  # so values move to make up for it
+    beyond = columns + J @ along
+    seen = beyond.T @ beyond
+    if not np.diag(seen).all():
         return None
-    moves = np.zeros(len(found.x))
+    known: Array = np.asarray(np.linalg.pinv(seen, hermitian=True), dtype=float)
+    moves = np.zeros((len(found.x), len(form.values)))
     moves[moving] = along
-    step = -float(beyond @ found.residual) / seen
-    return Told(form, step, found.unit / np.sqrt(seen), moves)
+    step = -known @ (beyond.T @ found.residual)
+    rounded = ROUNDED**2 / 12.0 * np.eye(len(step))
+    return Told(form, step, known * found.unit**2 + rounded, moves)
 
 
-def beside_form(found: F) -> F:
-    """The fit, its standard errors and intervals with what its laws' forms are known to."""
+def beside_form(found: F, named: Collection[Effect]) -> F:
+    """The fit, its errors and intervals with what the forms of laws that were named are known to.
+
+    Args:
+        found: The fit.
+        named: Effects that were looked for; numbers of others are as they were stated.
+    """
     more = np.zeros((len(found.x), len(found.x)))
+    for told in _told_of(found, named):
+        more += told.moves @ told.covariance @ told.moves.T
+    return with_values(replace(found, by_form=more)) if more.any() else found
+
+
+def forms(found: Fit, named: Collection[Effect]) -> list[str]:
+    """What is told of the forms of laws that were named, a sentence each."""
+    return [told.form.sentence(told.std.tolist()) for told in _told_of(found, named)]
+
+
+def alike_but_for_form(one: Effect, other: Effect) -> bool:
+    """Do two laws differ in nothing but the numbers of their form, which goes on between them?"""
+    form = other.form
+    if form is None or not form.values:
+        return False
+    wider = None if one.form is None else one.form.wider
+    laws = [law.form for law in (one, wider) if law is not None]
+    return any(
+        each is not None and len(each.values) == len(form.values) and each.law(form.values) == other
+        for each in laws
+    )
+
+
+def _told_of(found: Fit, named: Collection[Effect]) -> Iterator[Told]:
+    ids = {effect.id for effect in named}
     for effect in found.model.effects:
-        told = told_form(found, effect)
+        free = any(p.free for p in found.model.parameters if p.effect == effect)
+        told = told_form(found, effect) if free and effect.id in ids else None
         if told is not None:
-            more += told.std**2 * np.outer(told.moves, told.moves)
-    if not more.any():
-        return found
-    parts = more if found.parts is None else found.parts + more
-    return with_values(replace(found, parts=parts))
+            yield told
 
 
-def forms(found: Fit) -> list[str]:
-    """What is told of the laws' forms, a sentence each."""
-    told = [told_form(found, effect) for effect in found.model.effects]
-    return [each.form.sentence(each.std) for each in told if each is not None]
+def _slope(found: Fit, effect: Effect, form: Form[Effect], k: int) -> Array:
+    """(R,) derivative of the whitened gap by one number of a law's form."""
+    laws, ends = [], []
+    for change in (STEP, -STEP):
+        law = form.law([value + change * (j == k) for j, value in enumerate(form.values)])
+        laws.append(law)
+        ends.append(0.0 if law.form is None or not law.form.values else law.form.values[k])
+    ahead, behind = (_residual(found, effect, law) for law in laws)
+    return (ahead - behind) / max(ends[0] - ends[1], 1e-300)
 
 
 def _residual(found: Fit, effect: Effect, law: Effect) -> Array:
@@ -133,10 +208,12 @@ def _residual(found: Fit, effect: Effect, law: Effect) -> Array:
 
 
 def _by_law(model: Model, effect: Effect, law: Effect) -> Model:
-    """The same model with an effect by another law that has as many parameters."""
-    specs = iter(law.parameters)
-    parameters = tuple(
-        replace(p, effect=law, spec=next(specs)) if p.effect == effect else p
-        for p in model.parameters
-    )
+    """The same model with an effect by another law: its values, and zero for what is more."""
+    own = [p for p in model.parameters if p.effect == effect]
+    specs = law.parameters
+    new = [replace(p, effect=law, spec=spec) for p, spec in zip(own, specs, strict=False)]
+    new += [Parameter(law, spec, origin=own[0].origin) for spec in specs[len(own) :]]
+    first = model.parameters.index(own[0])
+    others = [p for p in model.parameters if p.effect != effect]
+    parameters = (*others[:first], *new, *others[first:])
     return replace(model, parameters=parameters, uncertainty=None)

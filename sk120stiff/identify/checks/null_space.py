@@ -66,8 +66,9 @@ def known_together(fit: Fit, effects: Collection[str]) -> tuple[str, ...]:
         effects: Their ids.
     """
     fit = replace(
-        fit, selection_uncertainty=None, left_out=None, omitted=None, foreign=None, parts=None
-    )
+        fit, selection_uncertainty=None, left_out=None, omitted=None, foreign=None, parts=None,
+        by_form=None,
+    )  # fmt: skip
     own = {k for k, each in enumerate(fit.parameters) if each.effect.id in effects}
     return tuple(said for members, said in _together(fit) if len(members) > 1 and members & own)
 

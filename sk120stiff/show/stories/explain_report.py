@@ -92,7 +92,7 @@ def summary_html(answer: Explanation) -> str:
     told = _answer(answer).blocks
     sizes = [sizes_of(answer, finding) for finding in answer.findings]
     first = 0 if answer.findings else 1  # the answer begins with it then
-    where = Items([*answer.unnamed, *answer.where[first:]])
+    where = Items([*answer.notes, *answer.unnamed, *answer.where[first:]])
     blocks = [lead_of(answer), *told, *sizes, steps_table(answer), where]
     return fragment(Section(title_of(answer), blocks))
 

@@ -41,7 +41,7 @@ def left_section(answer: Explanation, readings: Measurements) -> Section:
         )
     else:
         blocks.append("The noise is unknown, so no test of what is left is possible.")
-    blocks += [*answer.unnamed, *answer.limits]
+    blocks += [*answer.notes, *answer.unnamed, *answer.limits]
     blocks += [noise_sentence(answer.final), *noise_words(answer)]
     if answer.set_aside:
         blocks.append(_set_aside(answer, readings))

@@ -27,6 +27,7 @@ from sk120stiff.explain.positions.judge.posterior import alternatives
 from sk120stiff.explain.positions.select.candidates import usual_sizes
 from sk120stiff.explain.positions.select.choose import Chosen, usual
 from sk120stiff.explain.positions.select.linear import Linear
+from sk120stiff.explain.select.form import alike_but_for_form
 from sk120stiff.explain.select.score import SWEEPS
 from sk120stiff.identify.checks.left_over import beside
 from sk120stiff.identify.positions.calibrate import Calibration
@@ -195,7 +196,8 @@ def _next_to(
     standing = small.solved(whole, noise).square
     for e, own in laws.items():
         for law in own:
-            if _adjacent(linear.candidates[e], law[0], load_cases):
+            now = linear.candidates[e]
+            if _adjacent(now, law[0], load_cases) and not alike_but_for_form(law[0], now):
                 other = small.by_law(chosen.index(e), *law)
                 worse = max(other.solved(whole, noise).square - standing, 0.0) / noise
                 yield (other, whole), max(HALF_A_STEP, float(np.sqrt(expit(-0.5 * worse))))
@@ -216,7 +218,9 @@ def _others(
         tried = [
             small.by_law(k, *law)
             for law in own
-            if law[0] != now and not _adjacent(now, law[0], load_cases)
+            if law[0] != now
+            and not _adjacent(now, law[0], load_cases)
+            and not alike_but_for_form(law[0], now)
         ]
         near = sorted(tried, key=lambda each: each.solved(whole, noise).square)[:LAWS]
         yield from ((each, whole) for each in near if each.solved(whole, noise).square < most)

@@ -182,11 +182,12 @@ class Linear:
 
         `noise` is the variance of the whitened numbers, against which the priors count.
         """
-        pick = self.picked(chosen)
+        every = self.picked(chosen)
         G = self.whole if without is None else self.whole - self.sums[without]
         P = self.base.shape[1]
         times = np.ones(P + self.columns.shape[1])  # of the usual size, how wide a prior is
         for _ in range(WIDENED):
+            pick = every
             while True:
                 inner = G[np.ix_(pick, pick)].copy()
                 prior = np.where(pick < P, 0.0, noise / times[pick] ** 2)
@@ -198,13 +199,14 @@ class Linear:
                     break
                 pick = pick[~wrong]  # a part that would have to be softer than rigid is rigid
             wider = np.where(self._may_be_any[pick], np.maximum(np.abs(x), 1.0), 1.0)
-            if (np.abs(wider - times[pick]) <= AGREED * wider).all():
+            width = times[pick]
+            if (np.abs(wider - width) <= AGREED * wider).all():
                 break
             times[pick] = wider
         square = float(G[-1, -1] - G[pick, -1] @ x)
         sign, size = np.linalg.slogdet(inner[P:, P:] / noise)
         del sign
-        beyond = 4.0 * float(np.log(times[pick]).sum())  # by the width, and for being so rare
+        beyond = 4.0 * float(np.log(width).sum())  # by the width, and for being so rare
         return Solved(pick, x, max(square, 1e-12), float(size) + beyond)
 
     @cached_property

@@ -255,12 +255,12 @@ class PoseProblem(Problem):
     def centre(self) -> Array:
         """(P_free,) values in scaled units about which they are sought.
 
-        Of joint frames and waves that is none, wherever an earlier fit left them: what the readings
-        hardly tell of them would otherwise wander off, fit by fit.
+        Of joint frames and waves that is none, of a marker its stated place, wherever an earlier
+        fit left them: what the readings hardly tell would otherwise wander off, fit by fit.
         """
         effects = [self.model.parameters[k].effect for k in self.free]
-        told = JointFrame | TransmissionError | ToolOffset | MarkerShift
-        kept = [not isinstance(effect, told) for effect in effects]
+        hardly = JointFrame | TransmissionError | ToolOffset | MarkerShift
+        kept = [not isinstance(effect, hardly) for effect in effects]
         return np.asarray(self.start * kept)
 
     def channel_gap(self, values: Array, *, derivative: bool = False) -> tuple[Array, Array]:

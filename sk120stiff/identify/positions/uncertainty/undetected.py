@@ -54,6 +54,7 @@ def beside_not_named(found: Calibration, effects: Sequence[Effect]) -> Calibrati
         omitted=_padded(found.omitted, more),
         foreign=_padded(found.foreign, more),
         parts=_padded(found.parts, more),
+        by_form=_padded(found.by_form, more),
         parts_by=found.parts_by and (*found.parts_by, *[""] * more),
     )
     own = {each.name for each in fields(Calibration)} - {each.name for each in fields(Fit)}
