@@ -161,6 +161,8 @@ def explain_displacements(
         named.findings, remainder.something_else, together, noise_known=noise.known
     )
     remainder = remainder.unless([part.probability for part in together])
+    laws = {effect.id: effect for effect in found.final.model.effects}
+    findings = tuple(replace(each, effect=laws[each.effect.id]) for each in findings)
     effects = [finding.effect for finding in findings]
     beside = None if account is None else account.beside.final
     final = with_selection_uncertainty(found, findings, beside)

@@ -29,9 +29,7 @@ def test_it_is_named_with_its_size_and_springs_keep_theirs(cause: Cause, name: s
     options = Options(only=("base_rocking", "tool_compliance", *OTHERS))
     answer = answered(springs, hidden(cause, poses=12), options=options)
     assert [finding.effect.id for finding in answer.findings] == [name]
-    assert [
-        said for said in answer.notes if said.startswith(name) and "than is customary" in said
-    ]
+    assert [said for said in answer.notes if said.startswith(name) and "than is customary" in said]
     for spring, true in zip(answer.final.parameters, sk120().typical.joint.values(), strict=False):
         assert abs(spring.value - true) < 3.5 * spring.std
     soft = [p for p in answer.final.parameters if p.effect.id == name and p.internal > 1e-5]

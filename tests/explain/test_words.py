@@ -49,6 +49,7 @@ class Answered:
     next_poses: Any = None
     next_pairs: tuple[Any, ...] = ()
     guess: Any = None
+    units: str | None = None
     beyond: str | None = None
     borne_out: Any = None
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))

@@ -18,7 +18,7 @@ from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search
-from sk120stiff.explain.select.score import Scored
+from sk120stiff.explain.select.score import Scored, score_set
 from sk120stiff.explain.select.stepwise import laws_of, refit
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
@@ -51,6 +51,8 @@ def brought(
     softer: frozenset[str] = frozenset()
     for exact in (False, True):
         wide = asked(at, candidates, ids, soft=some, near=usual.linearised)
+        if not _any_beyond(usual, wide, some):
+            return frozenset(), near
         best = _best(wide)
         softer = some & {wide.candidates[e].id for e in best.effects if _beyond(usual, best, e)}
         if exact or not softer:
@@ -69,6 +71,12 @@ def brought(
 
 def _best(regression: Regression) -> Scored:
     return beam_search(regression, width=NARROW, max_effects=MOST)[0]
+
+
+def _any_beyond(usual: Regression, wide: Regression, some: Collection[str]) -> bool:
+    """Would one of some candidates, alone beside the springs, be softer than is believed?"""
+    places = [e for e, each in enumerate(wide.candidates) if each.id in some]
+    return any(_beyond(usual, score_set(wide, wide.sums(), (e,)), e) for e in places)
 
 
 def _beyond(usual: Regression, model: Scored, effect: int) -> bool:

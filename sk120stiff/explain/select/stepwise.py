@@ -166,6 +166,7 @@ def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
     """The same selection with other effects chosen, refitted and linearised there."""
     ids = tuple(effect.id for effect in found.base.model.effects)
     final = refit(found.base, effects, found.final)
+    effects, final = with_best_form(effects, final, from_there)
     linear = found.regression
     regression = regression_at(
         final, found.candidates, ids,
