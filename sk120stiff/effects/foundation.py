@@ -23,7 +23,7 @@ from sk120stiff.robot.rotations import homogeneous
 
 BELOW = "_below_"
 PEDESTALS = (0.4, 0.8, 1.6)  # m: heights of what arms stand on, where it is not told
-LOWEST, REACH = 0.02, 4.0  # m: within which such a height is sought
+LOWEST, REACH = 0.02, 2.5  # m: within which such a height is sought
 MINUS = "minus_"
 POINT = re.compile(
     rf"((?:{MINUS})?\d+)(?:_x_((?:{MINUS})?\d+)_y_((?:{MINUS})?\d+))?"

@@ -138,6 +138,9 @@ def explain_positions(
         seen, (linear, found, laws, hidden), final = final, about, again
     if (apart := _with_own_values(linear, found, final)) != found:
         found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
+    if found.order and _left(final) > _left(base):  # first order led astray
+        found, laws = nothing_named(linear, found), {}
+        final = _exactly(base, seen, linear, found, readings, catalogue)
     linear = _as_fitted(linear, found, final)
     tell("what is left", 0.85)
     final, guess, guessed = with_model_form(final), None, np.nan

@@ -25,7 +25,7 @@ F = TypeVar("F", bound=Fit)
 ROUNDED = 1e-3  # m, or another unit: to which names of parameters tell such a number
 STEP = 0.01  # m, or another unit: over which the derivative is taken
 ROUNDS = 6  # of steps
-FARTHEST = 0.3  # m, or another unit: what one step changes at most
+FARTHEST = 0.12  # m, or another unit: what one step changes at most
 DECISIVE = 10.0  # fall of -2 ln L beside the price of its numbers, for which a wider form is taken
 NEAR = 0.02  # standard errors from the best, from which on no step is worth while
 
