@@ -2,7 +2,6 @@
 
 from sk120stiff.data_checks.copies import without_copies
 from sk120stiff.data_checks.look import look, refuse_slips, refuse_unbelievable
-from sk120stiff.data_checks.scale import scale_doubt
 from sk120stiff.data_checks.search import find_slip
 from sk120stiff.data_checks.single_rows import place_of, slips_of_rows
 from sk120stiff.data_checks.stuck import without_stuck
@@ -14,7 +13,6 @@ __all__ = [
     "place_of",
     "refuse_slips",
     "refuse_unbelievable",
-    "scale_doubt",
     "slips_of_rows",
     "without_copies",
     "without_stuck",

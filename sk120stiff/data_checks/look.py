@@ -86,8 +86,8 @@ def look(model: Model, measurements: Measurements) -> DataChecks:
     return DataChecks(slip, scale, limits_doubt(robot, measurements), efforts, turns)
 
 
-def refuse_slips(model: Model, measurements: Measurements) -> None:
-    """Stop before a cause is sought for what is no cause, and tell what is in doubt.
+def refuse_slips(model: Model, measurements: Measurements) -> DataChecks:
+    """Stop before a cause is sought for what is no cause; what is in doubt is told and returned.
 
     Raises:
         Refusal: As `refuse_unbelievable`, or as `DataChecks.refuse_to_explain`.
@@ -97,6 +97,7 @@ def refuse_slips(model: Model, measurements: Measurements) -> None:
     doubts.refuse_to_explain(str(measurements.path or "the measurements"))
     for said in doubts.sentences:
         warnings.warn(said, ToolkitWarning, stacklevel=5)
+    return doubts
 
 
 def refuse_unbelievable(doubts: DataChecks, model: Model, measurements: Measurements) -> None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.data_checks.passive import compliances
+from sk120stiff.data_checks.passive import compliances, passive
 from sk120stiff.effects import Effect, effect, load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter, joint_spring_model
@@ -40,10 +40,8 @@ GUESSED = ("starting value", TYPICAL)  # origins of springs that nobody measured
 KNOWN = 3.0  # no arm is so many times softer or stiffer than the springs identified for it
 CERTAIN = 200.0  # no arm is so much softer or stiffer than another; a unit is
 BEYOND = 1.3  # times softer or stiffer than usual for its size, from where on it is told
-BY_FAR = 2.0  # times the squares that springs alone must leave, for what was brought to be needed
-WELL = (
-    0.01  # share of all squares that springs leave where they explain such readings by themselves
-)
+BY_FAR = 2.0  # times the squares that springs must leave alone, for more to be needed
+WELL = 0.01  # share of all squares that they leave where they explain readings by themselves
 BROUGHT = ("base_rocking", "base_sliding", "tool_compliance")  # not of the arm's maker
 MOST_UNITS = 6  # that are listed: a usual band spans two decades
 ALIKE = 0.3  # share of the readings' squares that one factor must explain to say anything
@@ -140,21 +138,13 @@ def _of_what_was_brought(model: Model, measurements: Measurements, most: float) 
         Parameter(each, spec, spec.usual) for each in more for spec in each.parameters
     ]
     A, d, of = _elastic(beside, measurements.masked())
-    alone = A[:, [each.id in there for each in of]]
+    springs_alone = 1.0 - passive(A[:, [each.id in there for each in of]], d).share
     c = compliances(A.T @ A, A.T @ d)
-    left = _left(alone, d)
-    if c is None or left < max(BY_FAR * _left(A, d), WELL * float(d @ d)):
+    if c is None or springs_alone < max(BY_FAR * (1.0 - passive(A, d).share), WELL):
         return False
     springs = c[[each.joint_spring for each in of]]
     moving = springs[springs > 0.0]
     return bool(len(moving)) and bool(np.median(moving) < most)
-
-
-def _left(A: Array, d: Array) -> float:
-    """Sum of squares that the best compliances (k,) of columns (M, k) leave of readings (M,)."""
-    c = compliances(A.T @ A, A.T @ d)
-    rest = d if c is None else d - A @ c
-    return float(rest @ rest)
 
 
 def _elastic(model: Model, used: Measurements) -> tuple[Array, Array, list[Effect]]:

@@ -9,13 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import on_one_thread
-from sk120stiff.data_checks import (
-    refuse_slips,
-    scale_doubt,
-    without_copies,
-    without_stuck,
-    without_wild,
-)
+from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
 from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.errors import InputError, ToolkitWarning
 from sk120stiff.explain.advise.best_guess import contenders
@@ -140,9 +134,8 @@ def explain_displacements(
     options = options or Options()
     tell = progress or _silent
     _refuse_unexplainable(model, measurements)
-    sound = _sound(model, as_seen(model.robot, measurements))
+    sound, units = _sound(model, as_seen(model.robot, measurements))
     used, rows = sound.masked(), np.flatnonzero(sound.use)
-    scale = scale_doubt(model, sound)
     tell("searching the catalogue", 0.05)
     under = _selections(model, used, options)
     found, noise = best_selection(used, under)
@@ -210,7 +203,7 @@ def explain_displacements(
             *softer_than_customary(final, found.regression.soft),
             *forms(final, effects),
         ),
-        units=None if scale is None else scale.sentence,
+        units=units,
         beyond=None if beyond is None else beyond.id,
         limits=options.limits,
         suspects=suspects,
@@ -321,15 +314,18 @@ def _selections(model: Model, measurements: Measurements, options: Options) -> T
     return under
 
 
-def _sound(model: Model, measurements: Measurements) -> Measurements:
-    """The readings with copied rows masked, once nothing in them looks like a slip of the pen."""
+def _sound(model: Model, measurements: Measurements) -> tuple[Measurements, str | None]:
+    """The readings with copied rows masked, once nothing in them looks like a slip of the pen.
+
+    And why their units are in doubt, if they are.
+    """
     sound, wild = without_wild(model.robot, measurements)
-    refuse_slips(model, sound)
+    scale = refuse_slips(model, sound).scale
     single, copied = without_copies(sound)
     for told in (wild, copied):
         if told:
             warnings.warn(told, ToolkitWarning, stacklevel=4)
-    return single
+    return single, None if scale is None else scale.sentence
 
 
 def _silent(phrase: str, share: float) -> None:
