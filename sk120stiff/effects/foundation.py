@@ -25,9 +25,8 @@ BELOW = "_below_"
 PEDESTALS = (0.4, 0.8, 1.6)  # m: heights of what arms stand on, where it is not told
 LOWEST, REACH = 0.02, 2.5  # m: within which such a height is sought
 MINUS = "minus_"
-POINT = re.compile(
-    rf"((?:{MINUS})?\d+)(?:_x_((?:{MINUS})?\d+)_y_((?:{MINUS})?\d+))?"
-)  # behind _below_
+_MM = rf"((?:{MINUS})?\d+)"
+POINT = re.compile(f"{_MM}(?:_x_{_MM}_y_{_MM})?")  # what stands behind _below_
 FINER = (0.75, 0.87, 1.15, 1.3)  # times such a height
 
 
@@ -117,7 +116,7 @@ class BaseRocking(StraightPart):
 
     def _rocking_about(self, at: Sequence[float]) -> BaseRocking:
         """The same about another point, to the millimetre."""
-        below, *beside = (round(float(value), 3) for value in at)
+        below, *beside = (round(float(value), 3) + 0.0 for value in at)  # no minus zero
         if self.beside is None:
             return replace(self, below=float(np.clip(below, LOWEST, REACH)))
         return replace(
@@ -156,10 +155,8 @@ class BaseRocking(StraightPart):
             "xy", "stiffness_{}" + self._end, softest=1e4, customary=3e5, typical=1e7,
             scale=self.scale, meaning="against rocking about {} of the base frame",
         )  # fmt: skip
-        return (
-            *own,
-            *([cross_term(self.scale, "x", "y", self._end, softest=2e4)] if self.askew else []),
-        )
+        cross = cross_term(self.scale, "x", "y", self._end, softest=2e4)
+        return (*own, cross) if self.askew else own
 
     @property
     def ties(self) -> tuple[tuple[int, ...], ...]:

@@ -155,7 +155,9 @@ def explain_displacements(
     )
     remainder = remainder.unless([part.probability for part in together])
     laws = {effect.id: effect for effect in found.final.model.effects}
-    findings = tuple(replace(each, effect=laws[each.effect.id]) for each in findings)
+    findings = tuple(
+        replace(each, effect=laws.get(each.effect.id, each.effect)) for each in findings
+    )
     effects = [finding.effect for finding in findings]
     beside = None if account is None else account.beside.final
     final = with_selection_uncertainty(found, findings, beside)

@@ -20,7 +20,7 @@ class Moves:
             it moves them together, and such readings are foretold alike.
         foreign: (P, P) covariance by a cause that has no name, which moves them together.
         parts: (P, P) the same by parts that yield instead, which foretell such readings alike.
-        form: (P, P) the same by what numbers of a law's form are known to.
+        by_form: (P, P) the same by what numbers of a law's form are known to.
     """
 
     models: Array
@@ -28,7 +28,7 @@ class Moves:
     omitted: Array
     foreign: Array
     parts: Array
-    form: Array
+    by_form: Array
 
     @classmethod
     def of(
@@ -39,7 +39,7 @@ class Moves:
         omitted: Array | None,
         foreign: Array | None,
         parts: Array | None,
-        form: Array | None,
+        by_form: Array | None,
     ) -> Moves:
         """Of so many estimates; None: by nothing."""
         none, apart = np.zeros(count), np.zeros((count, count))
@@ -50,7 +50,7 @@ class Moves:
             np.diag(each**2) if omitted is None else omitted,
             apart if foreign is None else foreign,
             apart if parts is None else parts,
-            apart if form is None else form,
+            apart if by_form is None else by_form,
         )
 
     def scaled(self, scale: Array) -> Moves:
@@ -62,19 +62,19 @@ class Moves:
             self.omitted * both,
             self.foreign * both,
             self.parts * both,
-            self.form * both,
+            self.by_form * both,
         )
 
     @property
     def covariance(self) -> Array:
         """(P, P) of all together, each model's move for itself."""
         apart = np.diag(self.models**2 + self.left_out**2)
-        return np.asarray(apart + self.foreign + self.parts + self.form)
+        return np.asarray(apart + self.foreign + self.parts + self.by_form)
 
     @property
     def random(self) -> Array:
         """(P,) standard errors that are as likely one way or the other."""
-        return np.sqrt(self.left_out**2 + np.diag(self.parts + self.form))
+        return np.sqrt(self.left_out**2 + np.diag(self.parts + self.by_form))
 
     def widened(self, ends: Array, x: Array, reach: float, bounds: tuple[Array, Array]) -> Array:
         """(P, 2) ends of intervals about estimates (P,) with these moves beside the noise.

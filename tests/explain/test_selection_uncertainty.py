@@ -4,26 +4,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.effects import effect
+from sk120stiff.effects import Effect, effect
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.confirm import UNTRIED
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
-from sk120stiff.explain.select.stepwise import select, with_effects
+from sk120stiff.explain.select.stepwise import Selection, select, with_effects
+from sk120stiff.identify import Fit
 from tests.explain.readings import base_fit, hidden
 from tests.hidden.generator.causes_joint import LostMotion
 from tests.hidden.generator.causes_sensor import ReadingDrift
 
 
-def test_a_name_that_does_not_fit_widens_no_error():
-    """Under growing loads friction is play with the other sign, and neither is ever negative."""
+def with_play(schedule: str) -> tuple[Fit, Selection, list[Effect]]:
+    """Springs fitted to a gear with play, what is selected, and play and friction of that gear."""
     joint = "joint_2_l"
-    base = base_fit(hidden(LostMotion(joint, {"half_width": 2e-4}), schedule="ascending"))
-    robot = base.model.robot
-    laws = [effect(robot, name, joint) for name in ("lost_motion", "friction_hysteresis")]
+    base = base_fit(hidden(LostMotion(joint, {"half_width": 2e-4}), schedule=schedule))
+    laws = [
+        effect(base.model.robot, name, joint) for name in ("lost_motion", "friction_hysteresis")
+    ]
     settled = select(
         base.model, base.problem.measurements, base.problem.noise, laws, max_effects=1, alpha=0.01
     )
-    play, friction = laws
+    return base, settled, laws
+
+
+def test_a_name_that_does_not_fit_widens_no_error():
+    """Under growing loads friction is play with the other sign, and neither is ever negative."""
+    base, settled, (play, friction) = with_play("ascending")
     found = with_effects(settled, [play])
     evidence = Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})
     alone = Finding(play, (), (), evidence)
@@ -56,13 +63,7 @@ def test_a_law_with_more_terms_that_nothing_asks_for_widens_no_error():
 
 def test_two_names_that_may_stand_for_each_other_may_both_be_named():
     """Each is among the alternatives of the other: in its place there is nothing to add then."""
-    joint = "joint_2_l"
-    base = base_fit(hidden(LostMotion(joint, {"half_width": 2e-4}), schedule="up_and_down"))
-    robot = base.model.robot
-    laws = [effect(robot, name, joint) for name in ("lost_motion", "friction_hysteresis")]
-    settled = select(
-        base.model, base.problem.measurements, base.problem.noise, laws, max_effects=1, alpha=0.01
-    )
+    _, settled, laws = with_play("up_and_down")
     found = with_effects(settled, laws)
     evidence = Evidence(9.0, 9.0, None, np.inf, UNTRIED, {}, {})
     pairs = zip(laws, laws[::-1], strict=True)

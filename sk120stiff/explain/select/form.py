@@ -53,8 +53,13 @@ class Told:
 
     @property
     def std(self) -> Array:
-        """(k,) standard errors."""
+        """(k,) standard errors of the best values."""
         return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def off(self) -> Array:
+        """(k, k) by what the numbers may be off: how the best ones err, and how far they are."""
+        return self.covariance + np.outer(self.step, self.step)
 
 
 def with_best_form(
@@ -73,9 +78,8 @@ def with_best_form(
         form = out[k].form
         if form is None or form.wider is None:
             continue
-        more, again = out, found
+        more = [*out[:k], form.wider, *out[k + 1 :]]
         try:
-            more = [*out[:k], form.wider, *out[k + 1 :]]
             again = refit(_by_law(found.model, out[k], form.wider), more, found)
         except Refusal:
             continue
@@ -85,7 +89,9 @@ def with_best_form(
         if told is None or told.worth < price:
             continue
         more, again = _settled(more, k, again, refit)
-        if 2.0 * (again.log_likelihood - found.log_likelihood) > price:
+        told = told_form(again, more[k])  # what is still under way, or at the end of what is sought
+        there = told is not None and bool((np.abs(told.step) <= told.std).all())
+        if there and 2.0 * (again.log_likelihood - found.log_likelihood) > price:
             out, found = more, again
     return out, found
 
@@ -159,13 +165,14 @@ def beside_form(found: F, named: Collection[Effect]) -> F:
     """
     more = np.zeros((len(found.x), len(found.x)))
     for told in _told_of(found, named):
-        more += told.moves @ told.covariance @ told.moves.T
+        more += told.moves @ told.off @ told.moves.T
     return with_values(replace(found, by_form=more)) if more.any() else found
 
 
 def forms(found: Fit, named: Collection[Effect]) -> list[str]:
     """What is told of the forms of laws that were named, a sentence each."""
-    return [told.form.sentence(told.std.tolist()) for told in _told_of(found, named)]
+    told = _told_of(found, named)
+    return [each.form.sentence(np.sqrt(np.diag(each.off)).tolist()) for each in told]
 
 
 def alike_but_for_form(one: Effect, other: Effect) -> bool:

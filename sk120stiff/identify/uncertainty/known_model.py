@@ -88,7 +88,7 @@ def _beside_noise(fit: Fit, informed: Array) -> Array:
         informed: (R, P) derivative in units of the noise, and what is known beforehand.
     """
     moves = fit.moves
-    models = _together(np.diag(moves.models**2) + moves.parts + moves.form, informed, AS_WELL)
+    models = _together(np.diag(moves.models**2) + moves.parts + moves.by_form, informed, AS_WELL)
     return np.asarray(moves.foreign + models + _together(moves.omitted, informed, OMITTED))
 
 
