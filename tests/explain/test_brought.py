@@ -62,5 +62,6 @@ def test_units_in_doubt_come_before_names(factor: float) -> None:
     answer = answered(arm.model, readings, options=Options(only=("joint_tilt",)))
     first = "Make sure of the units before anything else"
     assert next_step(answer).startswith(first) == (factor != 1.0)
+    assert (" If they are right: " in next_step(answer)) == (factor != 1.0)
     assert (answer.units is not None) == (factor != 1.0)
     assert verdict_document(answer, readings)["units"] == answer.units

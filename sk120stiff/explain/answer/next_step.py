@@ -54,7 +54,7 @@ def _of_the_units(answer: Explanation) -> list[str]:
         return []
     return [
         "Make sure of the units before anything else: a wrong one makes names and values. "
-        f"{answer.units[0].upper()}{answer.units[1:]}."
+        f"{answer.units[0].upper()}{answer.units[1:]}. If they are right:"
     ]
 
 
