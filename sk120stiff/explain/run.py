@@ -53,6 +53,7 @@ from sk120stiff.identify import (
     gauges_as_displacements,
     refuse_unusable,
 )
+from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.uncertainty.compliant_parts import beside_parts
 from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements, NoiseModel, as_displacements, decided
@@ -137,8 +138,8 @@ def explain_displacements(
     sound, units = _sound(model, as_seen(model.robot, measurements))
     used, rows = sound.masked(), np.flatnonzero(sound.use)
     tell("searching the catalogue", 0.05)
-    under = _selections(model, used, options)
-    found, noise = best_selection(used, under)
+    first, under = _selections(model, used, options)
+    found, noise = best_selection(used, first, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
     found, named, account = judged_names(found, base, under, seed=options.seed)
@@ -283,14 +284,15 @@ def _refuse_unexplainable(model: Model, measurements: Measurements) -> None:
         )
 
 
-def _selections(model: Model, measurements: Measurements, options: Options) -> Try:
-    """Selections at an answer, as a function of the noise and of what joins the base model."""
+def _selections(model: Model, measurements: Measurements, options: Options) -> tuple[Fit, Try]:
+    """The base model fitted, and selections by the noise and by what joins the base model."""
     base_model = with_assumed(model, measurements, options.assume)
     candidates = candidates_for(base_model, measurements, options)
     plain = tuple(effect for effect in candidates if not effect.random_effects)
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
     first = fit(base_model, measurements, noise=noise_candidates(measurements)[0])
+    measurements = with_by_force(first.model, measurements)
     soft, at_first = brought(first, candidates, alpha=options.alpha, prior=options.prior)
     known: dict[tuple[Effect | None, bool], Linearised | None] = {(None, True): at_first}
 
@@ -313,7 +315,7 @@ def _selections(model: Model, measurements: Measurements, options: Options) -> T
             known[beside, constants] = found.at_base
         return found
 
-    return under
+    return first, under
 
 
 def _sound(model: Model, measurements: Measurements) -> tuple[Measurements, str | None]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.robust import far_off, solve_robustly
+from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.solving import solve
@@ -39,6 +40,9 @@ def fit_displacements(
     model = model.under(measurements.gravity)
     used = as_seen(model.robot, measurements).masked()
     open_ = [noise] if noise is not None else candidates(used)
+    if open_[0].force and used.by_force is None:
+        first = solve(Problem(model, used, replace(open_[0], force=0.0)), method=method)
+        used = with_by_force(first.model, used)
     fits = [solve(Problem(model, used, each), method=method) for each in open_]
     found = fits[likelier(support(fits, method))]
     if robust:

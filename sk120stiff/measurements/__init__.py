@@ -9,7 +9,7 @@ from sk120stiff.measurements.files.writing import write_measurements
 from sk120stiff.measurements.noise.law import NoiseModel, candidates, decided
 from sk120stiff.measurements.noise.line_of_sight import may_have_rays, seen_from
 from sk120stiff.measurements.noise.model_form import EXACT, FormWhitener, ModelForm
-from sk120stiff.measurements.noise.whitening import Whitener
+from sk120stiff.measurements.noise.whitening import Whitener, Whitens
 from sk120stiff.measurements.noise_statement import Instrument, NoiseStatement
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "NoiseModel",
     "NoiseStatement",
     "Whitener",
+    "Whitens",
     "as_displacements",
     "candidates",
     "decided",

@@ -32,8 +32,8 @@ Zero = Literal["shared", "separate", "unknown"]
 
 # Row fields, cut together by `select`.
 PER_ROW = (
-    "pose", "joints", "wrench", "displacement", "directions", "sigma", "along", "order", "time",
-    "branch", "repeat", "use", "zero_group", "zero_count", "zero_order", "zero_time",
+    "pose", "joints", "wrench", "displacement", "directions", "sigma", "along", "by_force", "order",
+    "time", "branch", "repeat", "use", "zero_group", "zero_count", "zero_order", "zero_time",
     "zero_joints", "line",
 )  # fmt: skip
 
@@ -44,8 +44,7 @@ class Measurements(Tabular):
 
     Args:
         pose: N labels; rows of one label have the same joint values.
-        joint_names, joint_kinds: The n joint columns and whether each is an ``"angle"`` or a
-            ``"length"``.
+        joint_names, joint_kinds: The n joint columns; each an ``"angle"`` or a ``"length"``.
         joints: (N, n) coordinates, rad or m.
         wrench: (N, 6) force and moment as reported, N and N·m, in axes of `force_frame`.
         sensor_rpy: Roll, pitch, yaw [rad] by which they were turned into these; None: not at all.
@@ -57,16 +56,15 @@ class Measurements(Tabular):
             acts at the measured point unless said otherwise.
         noise: What the data say of the uncertainty of one reading.
         zero: ``"shared"``: rows of equal `zero_group` subtract the same zero reading;
-            ``"separate"``: each row its own; ``"unknown"``: nobody said (then `zero_group` is what
-            sharing within a pose would mean).
+            ``"separate"``: each its own; ``"unknown"``: nobody said.
         sigma: (N, 3) standard uncertainty of each loaded reading, m (NaN where not read), or None.
         along: (N, 3) standard uncertainty along the ray of the instrument, as a vector along it, m,
             base axes; NaN: errors of the three axes are independent (`noise/line_of_sight.py`).
-        order, time, branch, repeat: When and how each row was read, or None. `branch` holds load,
-            unload or "".
+        by_force: (N, 3, 3) m that each component of the force moves, off by all of it, or None.
+        order, time, branch, repeat: When and how each was read; `branch`: load, unload, "".
         use: (N,) False masks a row. Nothing is deleted.
-        zero_group, zero_count, zero_order, zero_time: (N,) which zero reading a row subtracts, of
-            how many readings it is the mean, and their mean order and time (NaN where not known).
+        zero_group, zero_count, zero_order, zero_time: (N,) which zero reading a row subtracts, how
+            many readings it is of, and their mean order and time (NaN where not known).
         zero_joints: (N, n) mean joint values of that zero reading where encoders read a little
             otherwise than under load, rad or m; None: the same.
         line: (N,) line in the file, 0 where there is none.
@@ -104,6 +102,7 @@ class Measurements(Tabular):
     zero: Zero = "unknown"
     sigma: Array | None = None
     along: Array | None = None
+    by_force: Array | None = None
     order: Array | None = None
     time: Array | None = None
     branch: tuple[str, ...] | None = None
@@ -145,6 +144,7 @@ class Measurements(Tabular):
         for name in ("zero_order", "zero_time"):
             self._array(name, (count,), may_be_nan=True)
         self._array("zero_joints", (count, n))
+        self._array("by_force", (count, 3, 3))
         self._array("directions", (count, 3))
         self._array("use", (count,), np.bool_, np.ones(count))
         self._array("line", (count,), np.int64, np.zeros(count))

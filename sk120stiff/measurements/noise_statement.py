@@ -65,17 +65,22 @@ class NoiseStatement:
         growth: Part that grows with the displacement: standard uncertainty per metre of
             displacement.
         instrument: What took the readings, where it is sharper along its ray than across.
+        force: Standard uncertainty of every component of a force, as a share of the whole force, as
+            a gauge held by hand has it: 0.017 is one degree.
     """
 
     sigma: float | None = None
     growth: float | None = None
     instrument: Instrument | None = None
+    force: float | None = None
 
     def __post_init__(self) -> None:
         if self.sigma is not None and not 0 < self.sigma < np.inf:
             raise InputError(f"a noise sigma of {self.sigma} m is not positive")
         if self.growth is not None and not 0 <= self.growth < 1:
             raise InputError(f"a noise growth of {self.growth} is not between 0 and 1")
+        if self.force is not None and not 0 <= self.force < 1:
+            raise InputError(f"an error of forces of {self.force} is not between 0 and 1")
 
 
 UNSTATED = NoiseStatement()
@@ -92,9 +97,13 @@ class HasSize(Protocol):
     def growth(self) -> float | None:
         """Part that grows with the displacement."""
 
+    @property
+    def force(self) -> float | None:
+        """Standard uncertainty of the components of a force, as a share of it."""
+
 
 def stated(noise: HasSize) -> NoiseStatement:
     """What a noise model, or a statement, states of readings."""
     if isinstance(noise, NoiseStatement):
         return noise
-    return NoiseStatement(noise.sigma, noise.growth)
+    return NoiseStatement(noise.sigma, noise.growth, force=noise.force or None)

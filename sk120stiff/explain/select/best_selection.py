@@ -3,12 +3,16 @@
 What was stated of the noise, or found from repeats, stays the yardstick of every fit, whatever
 else a search took into account (`beside_form.py`).
 
+Noise that goes with the load is asked of single poses before the search, lest it makes names, and
+again beside what the search settled on: what has a name is no noise.
+
 A gap that is rounding, because the readings were computed, has no cause: the search is made again
 with the finest noise that instruments have, and finds none.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
@@ -17,9 +21,14 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
+from sk120stiff.identify.checks.growing import growing
 from sk120stiff.identify.solving import widened_as
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.measurements.noise.law import FINEST
+
+ROUNDS = 3  # of asking single poses and searching
+SUSPECTED = 4.0  # fall of -2 ln L from which on a search begins with noise that goes with the load
+ALIKE = 0.1  # of its size by which noise may differ beside what was found, without a new search
 
 
 class Try(Protocol):
@@ -30,19 +39,40 @@ class Try(Protocol):
         ...
 
 
-def best_selection(measurements: Measurements, under: Try) -> tuple[Selection, NoiseModel]:
+def best_selection(
+    measurements: Measurements, first: Fit, under: Try
+) -> tuple[Selection, NoiseModel]:
     """The best selection, and the noise that its fits are to be held against.
 
     Args:
         measurements: Readings in use.
+        first: The base model, fitted to them.
         under: Makes a selection under one noise model.
     """
-    tried = [under(noise) for noise in candidates(measurements)]
-    found = tried[likelier([-each.total for each in tried])]
-    noise = found.base.problem.noise
+    plain = candidates(measurements)
+    open_ = [growing(held_against(noise, first), least=SUSPECTED) or noise for noise in plain]
+    for _ in range(ROUNDS):
+        found, noise = _likeliest(open_, under)
+        again = [growing(held_against(noise, found.final)) or noise for noise in plain]
+        if all(map(_alike, again, open_)):
+            break
+        open_ = again
     if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
+
+
+def _likeliest(open_: Sequence[NoiseModel], under: Try) -> tuple[Selection, NoiseModel]:
+    tried = [under(noise) for noise in open_]
+    best = likelier([-each.total for each in tried])
+    return tried[best], tried[best].base.problem.noise
+
+
+def _alike(one: NoiseModel, other: NoiseModel) -> bool:
+    """Do both hold the same of what goes with the load?"""
+    return all(
+        abs(a - b) <= ALIKE * b for a, b in ((one.growth, other.growth), (one.force, other.force))
+    )
 
 
 def held_against(noise: NoiseModel, fit: Fit) -> Fit:

@@ -17,7 +17,7 @@ from scipy.stats import chi2
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.identify import Problem
-from sk120stiff.measurements import FormWhitener, Whitener
+from sk120stiff.measurements import Whitens
 from sk120stiff.measurements.poses import rows_by_label
 
 LIMIT = 4.2  # standard errors; among 300 axes noise alone gets there once in a hundred files
@@ -32,7 +32,7 @@ CLEAN = 1e-3  # probability that noise alone leaves more
 
 def outlying_rows(
     regression: Regression,
-    whitener: Whitener | FormWhitener,
+    whitener: Whitens,
     courses: Sequence[Array] = (),
     borne_out: Mask | None = None,
 ) -> Index:
@@ -85,7 +85,7 @@ def outlying_rows(
 
 def standing_apart(
     regression: Regression,
-    whitener: Whitener | FormWhitener,
+    whitener: Whitens,
     effects: Iterable[int],
     borne_out: Mask | None = None,
 ) -> Index:
@@ -314,9 +314,7 @@ class _Half:
         return new
 
 
-def _shift_columns(
-    whitener: Whitener | FormWhitener, pose: Index, borne_out: Mask | None = None
-) -> list[_Shifts]:
+def _shift_columns(whitener: Whitens, pose: Index, borne_out: Mask | None = None) -> list[_Shifts]:
     """The shifts of all readings. Whitening mixes rows of one pose (R,) only."""
     count, reading = whitener.n_readings, whitener.reading
     numbers = rows_by_label(pose)  # of each pose

@@ -10,8 +10,9 @@ import numpy as np
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.errors import InputError
+from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.solve.polish import FAINTEST
-from sk120stiff.measurements import FormWhitener, Measurements, NoiseModel, Whitener
+from sk120stiff.measurements import Measurements, NoiseModel, Whitens
 from sk120stiff.model import Model
 
 
@@ -21,7 +22,8 @@ class Problem:
 
     Attributes:
         model: Gives the starting values and says which parameters are free.
-        measurements: N readings in use, with displacements.
+        measurements: N readings in use, with displacements; where forces err, with what they move,
+            which the model's values tell of readings that do not know it yet.
         noise: Covariance of the readings.
         weights: (N,) share of its information that each reading keeps, in (0, 1]; None: all of it.
     """
@@ -51,6 +53,9 @@ class Problem:
                 where=f"{where}, columns fx, fy, fz",
                 remedy="Add readings under load; rows with fx = fy = fz = 0 are zero readings.",
             )
+        if self.noise.force > 0 and self.measurements.by_force is None:
+            known = with_by_force(self.model, self.measurements)
+            object.__setattr__(self, "measurements", known)
 
     @cached_property
     def load_cases(self) -> LoadCases:
@@ -79,7 +84,7 @@ class Problem:
         return np.asarray(np.linalg.norm(self.measurements.moved, axis=1))
 
     @cached_property
-    def whitener(self) -> Whitener | FormWhitener:
+    def whitener(self) -> Whitens:
         """V^(-1/2), with V from the noise, the measured sizes and the weights."""
         return self.noise.whitener(self.measurements, self.sizes, self.weights)
 

@@ -130,7 +130,8 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
         str(table.path),
         SAME_JOINT if roles.measured == columns.DISPLACEMENTS else SAME_POSE,
     )
-    noise = NoiseStatement(_sigma(file), settings.noise.growth, _instrument(file))
+    said = settings.noise
+    noise = NoiseStatement(_sigma(file), said.growth, _instrument(file), said.force)
     own = rows.sigma is not None
     if absolute is not None:
         own = absolute.channels.sigma_of_rows is not None

@@ -235,6 +235,8 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
         noise["unit"] = length
     if m.noise.growth is not None:
         noise["growth"] = m.noise.growth
+    if m.noise.force is not None:
+        noise["force"] = m.noise.force
     if noise:
         settings["noise"] = noise
     return settings | _beside(m)

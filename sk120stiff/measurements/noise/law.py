@@ -4,13 +4,15 @@ The law, per axis and in the axes of the readings: a displacement is a loaded re
 of `zero_count` zero readings. The loaded reading has the variance σ² + (growth·|d|)², or s² where
 the row states its own, plus (growth·|d|)². The zero reading has σ²/zero_count, or as much as the
 loaded readings that subtract it state on average. Rows that subtract the same zero reading share
-its error, whatever the number of rows.
+its error, whatever the number of rows. Forces that were read by hand add what their errors move
+(`forces.py`).
 
 An instrument that is sharper along its ray than across it makes the errors of one reading's axes go
 together; such readings are whitened along the ray and across it (`line_of_sight.py`).
 
 What was stated is the yardstick: no scatter overrules it. Noise that grows with the displacement
-was stated, or shows in true repeats; nothing else tells it from a cause that grows with the load.
+was stated, or shows in true repeats, or within poses (`identify/checks/growing.py`): nothing else
+tells it from a cause that grows with the load.
 """
 
 from __future__ import annotations
@@ -26,14 +28,16 @@ from sk120stiff.arrays import Array, Integers
 from sk120stiff.errors import InputError, two_digits
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import read_apart
+from sk120stiff.measurements.noise.forces import ForceWhitener, by_force_of
 from sk120stiff.measurements.noise.line_of_sight import SEEN, in_axes_of_sight
 from sk120stiff.measurements.noise.model_form import EXACT, FormWhitener, ModelForm
 from sk120stiff.measurements.noise.repeats import ENOUGH, Repeated, repeated
-from sk120stiff.measurements.noise.whitening import Whitener
+from sk120stiff.measurements.noise.whitening import Whitener, Whitens
 from sk120stiff.measurements.table.branches import TOLD
 
 # Where nothing says how large the noise is, a model needs a scale to start from: a laser tracker's.
 _START = 10e-6  # m
+WITHIN = "Readings of single poses, about all that is smooth in their loads,"
 FINEST = 1e-9  # m; what is smaller is that of copied rows or computed data, of no instrument
 
 
@@ -50,9 +54,11 @@ class NoiseModel:
         freedom: Degrees of freedom behind sigma: infinite where it was stated, those of the repeats
             that tell it, 0 where it is only a scale to start from and the fit has to tell.
         form: Model-form error beside the noise of the instrument.
+        force: Standard uncertainty of every component of a force, as a share of the whole force.
 
     Raises:
-        InputError: A sigma that is not positive, a growth below zero or from 1 up, an unknown zero.
+        InputError: A sigma that is not positive, a growth or an error of forces below zero or from
+            1 up, an unknown zero.
 
     Examples:
         >>> import sk120stiff as sk
@@ -69,12 +75,15 @@ class NoiseModel:
     zero: Literal["shared", "separate"] = "shared"
     freedom: float = np.inf
     form: ModelForm = EXACT
+    force: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0 < self.sigma < np.inf:
             raise InputError(f"a noise sigma of {self.sigma} m is not positive")
         if not 0 <= self.growth < 1:
             raise InputError(f"a noise growth of {self.growth} is not between 0 and 1")
+        if not 0 <= self.force < 1:
+            raise InputError(f"an error of forces of {self.force} is not between 0 and 1")
         if self.zero not in ("shared", "separate"):
             raise InputError(f"a zero reading that is {self.zero!r} has no covariance")
         if not self.freedom >= 0:
@@ -91,7 +100,7 @@ class NoiseModel:
         return self.freedom >= ENOUGH
 
     def scaled(self, factor: float) -> NoiseModel:
-        """The same model with sigma and growth times `factor`.
+        """The same model with sigma, growth and errors of forces times `factor`.
 
         V is multiplied by factor², except for what rows state of their own (sx, sy, sz).
 
@@ -104,6 +113,7 @@ class NoiseModel:
             self,
             sigma=self.sigma * factor,
             growth=self.growth * factor,
+            force=self.force * factor,
             form=self.form.scaled(factor),
         )
 
@@ -131,12 +141,15 @@ class NoiseModel:
             (15, 3) 14.1 µm
         """
         stated = None if measurements.sigma is None else measurements.sigma**2
-        return self._variances(measurements, sizes, stated)
+        own, zero = self._variances(measurements, sizes, stated)
+        if self.force > 0:
+            own = own + ((self.force * by_force_of(measurements)) ** 2).sum(axis=2)
+        return own, zero
 
     def _variances(
         self, measurements: Measurements, sizes: ArrayLike | None, stated: Array | None
     ) -> tuple[Array, Array]:
-        """See `variances`; `stated` (N, 3) are those that rows state, along any axes."""
+        """See `variances`, without forces; `stated` (N, 3) are those of rows, along any axes."""
         count = measurements.n_readings
         own = zero = np.full((count, 3), self.sigma**2)
         if stated is not None:
@@ -154,7 +167,7 @@ class NoiseModel:
         measurements: Measurements,
         sizes: ArrayLike | None = None,
         weights: Array | None = None,
-    ) -> Whitener | FormWhitener:
+    ) -> Whitens:
         """The whitener of these readings; parameters and errors as in `variances`.
 
         `weights` (N,) is the share of its information that each reading keeps; None: all of it.
@@ -178,13 +191,16 @@ class NoiseModel:
             own, zero, group = own + zero, np.zeros_like(own), np.arange(len(own))
         if weights is not None:
             own = own / weights[:, None]
-        noise = Whitener(own, zero, group, axes)
+        noise: Whitens = Whitener(own, zero, group, axes)
+        if self.force > 0:
+            noise = ForceWhitener(noise, self.force, measurements, weights)
         return FormWhitener(noise, self.form, measurements) if self.form else noise
 
     def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Array:
         """Dense covariance (3, N, N) per axis, m²: for a look at few readings, not for fits.
 
-        What an instrument's ray makes the axes of one reading have in common is not in it.
+        What an instrument's ray or a force's error makes the axes of one reading have in common is
+        not in it.
 
         Examples:
             >>> import sk120stiff as sk
@@ -218,6 +234,8 @@ class NoiseModel:
         said = ""
         if self.growth > 0:
             said = f"The loaded one has {self.growth * 100:.3g} % of its displacement besides. "
+        if self.force > 0:
+            said += f"Every component of a force is off by {self.force * 100:.3g} % of the force. "
         group = np.zeros(2) if measurements is None else measurements.zero_group
         if self.zero == "shared" and len(np.unique(group)) < len(group):
             return f"{said}Rows that subtract the same zero reading share its error."
@@ -255,10 +273,22 @@ def decided(noise: NoiseModel, measurements: Measurements) -> tuple[str, ...]:
         )
     if noise.growth > 0 and measurements.noise.growth is None:
         said.append(
-            f"Repeats scatter the more the larger the displacement: "
+            f"{_witness(measurements)} scatter the more the larger the displacement: "
             f"{two_digits(noise.growth * 100)} % of it is added to the uncertainty, in squares."
         )
+    if noise.force > 0 and measurements.noise.force is None:
+        said.append(
+            f"{WITHIN} scatter as where every component of a force is off by "
+            f"{two_digits(noise.force * 100)} % of the force, as with a gauge held by hand, and "
+            "that is added to the uncertainty. If you know better, write 'noise: {force: ...}' "
+            "(a share: 0.01 for 1 %)."
+        )
     return tuple(said)
+
+
+def _witness(measurements: Measurements) -> str:
+    """Who tells that noise grows."""
+    return "Repeats" if any(each.growth for each in candidates(measurements)) else WITHIN
 
 
 def _described(measurements: Measurements, zero: Literal["shared", "separate"]) -> NoiseModel:
@@ -269,12 +299,13 @@ def _described(measurements: Measurements, zero: Literal["shared", "separate"]) 
         found = repeated(measurements, zero, grows=growth is None)
     if growth is None:
         growth = found.growth if found is not None else 0.0
+    force = measurements.noise.force or 0.0
     if stated is not None:
-        return NoiseModel(stated, growth, zero)
+        return NoiseModel(stated, growth, zero, force=force)
     if measurements.sigma is not None:
-        return NoiseModel(float(np.nanmedian(measurements.sigma)), growth, zero)
+        return NoiseModel(float(np.nanmedian(measurements.sigma)), growth, zero, force=force)
     sigma, freedom = _from_repeats(found)
-    return NoiseModel(sigma, growth, zero, freedom)
+    return NoiseModel(sigma, growth, zero, freedom, force=force)
 
 
 def _from_repeats(found: Repeated | None) -> tuple[float, float]:

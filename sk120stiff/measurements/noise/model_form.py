@@ -22,7 +22,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import turns_onto
-from sk120stiff.measurements.noise.whitening import Whitener
+from sk120stiff.measurements.noise.whitening import Whitens
 from sk120stiff.measurements.poses import rows_by_label
 
 
@@ -124,7 +124,7 @@ class FormWhitener:
         measurements: The readings, with displacements.
     """
 
-    def __init__(self, noise: Whitener, form: ModelForm, measurements: Measurements) -> None:
+    def __init__(self, noise: Whitens, form: ModelForm, measurements: Measurements) -> None:
         self._noise = noise
         self.n_readings, self.reading = noise.n_readings, noise.reading
         proportional, constant = form_columns(measurements)

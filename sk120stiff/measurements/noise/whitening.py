@@ -11,11 +11,27 @@ An axis that was not read has an infinite variance d: it adds nothing to t and s
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
+
+
+class Whitens(Protocol):
+    """V^(-1/2) of some covariance V of N displacement readings, of which R numbers were read."""
+
+    n_readings: int
+    reading: Index
+    """(R,) reading of each number that `apply` whitens."""
+    logdet: float
+    """Natural logarithm of det V, over all numbers that were read; V in m²."""
+
+    def apply(self, x: ArrayLike) -> Array:
+        """V^(-1/2) x: (N, 3) becomes (R,), and (N, 3, k) becomes (R, k); see `Whitener.apply`."""
+        ...
 
 
 class Whitener:

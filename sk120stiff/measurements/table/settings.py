@@ -109,8 +109,9 @@ class InstrumentEntry(Strict):
 class NoiseEntry(Strict):
     """Standard uncertainty of one reading per axis, and the part that grows with displacement.
 
-    `rotation` is that of an orientation about each axis; `instrument` is given in the place of
-    `sigma` where one is sharper along its ray than across it.
+    `force` is that of every component of a force, as a share of the force; `rotation` that of an
+    orientation about each axis; `instrument` is given in the place of `sigma` where one is sharper
+    along its ray than across it.
     """
 
     sigma: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
@@ -118,6 +119,7 @@ class NoiseEntry(Strict):
     rotation: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     rotation_unit: str | None = None
     growth: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
+    force: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
     instrument: InstrumentEntry | None = None
 
 

@@ -1,0 +1,134 @@
+"""Noise that goes with the load, as single poses show it without a reading repeated.
+
+A force that was read by hand errs by a share of itself, each reading by its own, and so does the
+displacement that it is written beside. No two such readings are repeats. But whatever an arm lacks
+is smooth in the load at one pose, and these errors are not: what single poses leave about lines
+through their loads, constants, curves and branches tells their size, by restricted likelihood
+(Patterson & Thompson 1971), as repeats do (`measurements/noise/repeats.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from scipy import linalg
+from scipy.optimize import minimize_scalar
+
+from sk120stiff.arrays import Index
+from sk120stiff.identify.checks.saturated import load_basis, pose_columns
+from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.solve.forces import with_by_force
+from sk120stiff.identify.solve.problem import Problem
+from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.noise.repeats import ENOUGH, STRONG
+from sk120stiff.measurements.poses import rows_by_label
+
+MOST = 0.1  # of the force or displacement that noise may be; a gauge held six degrees askew
+REACH = 7.0  # natural logarithm of how much less of it is looked for
+CLOSE = 0.02  # natural logarithm of sizes that are as good
+INDEPENDENT = 1e-6  # of the longest column of a pose: what a column has beside the others
+
+
+def growing(fit: Fit, least: float = STRONG) -> NoiseModel | None:
+    """The noise of a fit's readings with what goes with the load, where single poses ask for it.
+
+    Errors of forces, or a share of the displacement, whichever is likelier. None where neither is
+    by so much likelier than noise of one size, where poses have too few readings, and where the
+    noise was described already, or was asked of repeats.
+
+    Args:
+        fit: A fitted model; its noise has no model-form error.
+        least: By which -2 ln L has to fall.
+    """
+    noise = fit.problem.noise
+    described = noise.growth or noise.force or noise.form
+    if described or (noise.known and not noise.stated):
+        return None
+    readings = fit.problem.measurements
+    if readings.by_force is None:
+        readings = with_by_force(fit.model, readings)
+    left = _Left(fit, readings)
+    if left.freedom < ENOUGH:
+        return None
+    if not noise.stated:
+        noise = noise.scaled(left.factor(noise))
+    best, lowest = None, left.deviance(noise, free=True) - least
+    for unit in _laws(noise, readings):
+        most = float(np.log(MOST / (unit.growth + unit.force)))
+
+        def at(logarithm: float, unit: NoiseModel = unit) -> NoiseModel:
+            size = float(np.exp(logarithm))
+            return replace(unit, growth=unit.growth * size, force=unit.force * size)
+
+        found = minimize_scalar(
+            lambda logarithm, at=at: left.deviance(at(logarithm), free=not noise.stated),
+            bounds=(most - REACH, most), method="bounded", options={"xatol": CLOSE},
+        )  # fmt: skip
+        if found.fun < lowest and found.x < most - 2.0 * CLOSE:
+            best, lowest = at(float(found.x)), float(found.fun)
+    if best is None or noise.stated:
+        return best
+    return best.scaled(left.factor(best))
+
+
+def _laws(noise: NoiseModel, readings: Measurements) -> Iterator[NoiseModel]:
+    """Each law beside the noise, of a size that is σ at the usual reading."""
+    said = readings.noise
+    if said.growth is None and readings.sigma is None:
+        usual = float(np.median(np.linalg.norm(readings.moved, axis=1)))
+        if usual > 0.0:
+            yield replace(noise, growth=noise.sigma / usual)
+    if said.force is None and readings.by_force is not None:
+        usual = float(np.median(np.linalg.norm(readings.by_force, axis=(1, 2)))) / np.sqrt(3.0)
+        if usual > 0.0:
+            yield replace(noise, force=noise.sigma / usual)
+
+
+class _Left:
+    """What all that is smooth in the loads of single poses leaves of a gap.
+
+    Args:
+        fit: Gives the gap.
+        readings: Its readings, with what their forces move.
+    """
+
+    def __init__(self, fit: Fit, readings: Measurements) -> None:
+        problem = fit.problem
+        self._problem: Problem = replace(problem, measurements=readings)
+        self._gap = fit.gap
+        basis = load_basis(problem.load_cases, jump=True, cubic=True, branches=True)
+        self._columns = pose_columns(basis)
+        white = problem.whitener.apply(self._columns)
+        self._own: list[tuple[Index, Index]] = []
+        for rows in rows_by_label(problem.pose):
+            _, R, order = linalg.qr(white[rows], mode="economic", pivoting=True)
+            size = np.abs(np.diag(R))
+            rank = int((size > INDEPENDENT * size.max(initial=0.0)).sum())
+            self._own.append((rows, np.sort(order[:rank]).astype(np.intp)))
+        self.freedom = len(problem.pose) - sum(len(own) for _, own in self._own)
+        """Degrees of freedom."""
+
+    def deviance(self, noise: NoiseModel, *, free: bool) -> float:
+        """-2 ln L of a noise, or where its size is `free` of the likeliest size of it."""
+        square, price = self._terms(noise)
+        if not free:
+            return square + price
+        return self.freedom * (1.0 + float(np.log(square / self.freedom))) + price
+
+    def factor(self, noise: NoiseModel) -> float:
+        """The likeliest size over the one assumed."""
+        return float(np.sqrt(self._terms(noise)[0] / self.freedom))
+
+    def _terms(self, noise: NoiseModel) -> tuple[float, float]:
+        """Square of what is left, and ln det V + ln det XᵀV⁻¹X."""
+        whitener = replace(self._problem, noise=noise).whitener
+        white, columns = whitener.apply(self._gap), whitener.apply(self._columns)
+        square, price = 0.0, float(whitener.logdet)
+        for rows, own in self._own:
+            Q, R = np.linalg.qr(columns[np.ix_(rows, own)])
+            left = white[rows] - Q @ (Q.T @ white[rows])
+            square += float(left @ left)
+            price += 2.0 * float(np.log(np.abs(np.diag(R))).sum())
+        return max(square, 1e-300), price
