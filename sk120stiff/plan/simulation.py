@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Mask
-from sk120stiff.effects import load_cases_of
+from sk120stiff.effects import LoadCases, load_cases_of
 from sk120stiff.errors import InputError
 from sk120stiff.files import html_table
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -110,7 +110,8 @@ def simulate(
         )
     steps = schedule or Schedule()
     readings = scheduled(plan, steps)
-    exact = model.predict(load_cases_of(model.robot, readings))
+    cases = load_cases_of(model.robot, readings)
+    exact = model.predict(cases)
     count = readings.n_readings
     error, zero_error = np.zeros((count, 3)), np.zeros((count, 3))
     hit = np.zeros(count, dtype=bool)
@@ -122,18 +123,21 @@ def simulate(
         if isinstance(noise, Instrument):
             own, zero_error, error = _seen(noise, model, readings, zero_draws, draws)
         else:
-            own, zero = noise.variances(readings, np.linalg.norm(exact, axis=1))
+            of_readings = replace(noise, force=0.0)
+            own, zero = of_readings.variances(readings, np.linalg.norm(exact, axis=1))
             zero_error, error = zero_draws * np.sqrt(zero), draws * np.sqrt(own)
         hit = rng.random(count) < outliers
         direction = rng.normal(size=(count, 3))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         size = rng.uniform(*OUTLIER, count) * np.sqrt(own.mean(axis=1))
         error += (hit * size)[:, None] * direction
+        if isinstance(noise, NoiseModel) and noise.force > 0.0:
+            error += _by_forces(model, cases, noise.force, rng) - exact
     stated = NoiseStatement()
     if isinstance(noise, Instrument):
         stated = NoiseStatement(instrument=noise)
     elif noise is not None:
-        stated = NoiseStatement(noise.sigma, noise.growth or None)
+        stated = NoiseStatement(noise.sigma, noise.growth or None, force=noise.force or None)
     made = replace(
         readings,
         displacement=exact + error - zero_error,
@@ -156,11 +160,13 @@ def _of_channels(
     seed: int,
 ) -> Simulated:
     """See `simulate`: of positions, single readings and turns."""
-    growing = isinstance(noise, Instrument) or (noise is not None and noise.growth > 0.0)
+    growing = isinstance(noise, Instrument) or (
+        noise is not None and noise.growth + noise.force > 0.0
+    )
     if growing or (schedule is not None and schedule != Schedule(zero=schedule.zero)):
         raise InputError(
-            "load steps, repeats, growing noise and a ray are those of displacements, and this "
-            "plan is read row by row",
+            "load steps, repeats, growing noise, errors of forces and a ray are those of "
+            "displacements, and this plan is read row by row",
             where=str(plan.path or "plan"),
             remedy="Leave them out: write every row that is to be read into the plan.",
         )
@@ -181,6 +187,14 @@ def _of_channels(
     source = f"simulated from a model of {model.robot.name}, seed {seed}"
     exact = model.under(plan.gravity).predict(load_cases_of(model.robot, made))
     return Simulated(replace(made, source=source), exact, np.zeros_like(exact), hit)
+
+
+def _by_forces(model: Model, cases: LoadCases, share: float, rng: np.random.Generator) -> Array:
+    """(N, 3) displacements under forces each component of which is off by a share of them [m]."""
+    size = np.linalg.norm(cases.wrench[:, :3], axis=1, keepdims=True)
+    wrench = cases.wrench.copy()
+    wrench[:, :3] += share * size * rng.normal(size=(cases.count, 3))
+    return model.predict(replace(cases, wrench=wrench))
 
 
 def _seen(

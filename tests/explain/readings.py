@@ -1,5 +1,7 @@
 """Readings of an SK120 with known hidden causes, made by the generator of the blind benchmark."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from sk120stiff import Model, base_model, load_robot
@@ -24,13 +26,20 @@ def hidden(
     sigma: float = SIGMA,
     stated: bool = True,
     seed: int = 7,
+    force_error: float = 0.0,
 ) -> Measurements:
-    """Readings with these causes and noise, in base axes, each pose with a zero of its own."""
+    """Readings with these causes and noise, in base axes, each pose with a zero of its own.
+
+    Every component of a force is off the one that is written by a draw of `force_error` of it.
+    """
     arm = sk120()
     rng = np.random.default_rng(seed)
     rows = plan(arm, rng, poses=poses, loads=loads, schedule=schedule, point=POINT)
     springs = {name: 1.0 / value for name, value in arm.typical.joint.items()}
-    displacement, start, _ = World(arm, springs, causes).observe(rows)
+    size = np.linalg.norm(rows.force, axis=1, keepdims=True)
+    off = force_error * size * np.random.default_rng(seed + 1000).normal(size=rows.force.shape)
+    pulled = replace(rows, force=rows.force + off)
+    displacement, start, _ = World(arm, springs, causes).observe(pulled)
     error, zero_error = Noise(sigma, shared_zero=True).sample(rows, displacement, start, rng)
     return Measurements(
         pose=tuple(str(pose) for pose in rows.pose),

@@ -42,6 +42,7 @@ def command(
     noise_rotation: str | None = None,
     zero: Zero = Zero.shared,
     growth: Annotated[float, typer.Option(min=0.0, max=0.5)] = 0.0,
+    force_error: Annotated[float, typer.Option(min=0.0, max=0.5)] = 0.0,
     schedule: Steps = Steps.as_given,
     levels: Annotated[int, typer.Option(min=1)] = 5,
     repeats: Annotated[int, typer.Option(min=1)] = 1,
@@ -63,6 +64,8 @@ def command(
             [default: what the plan's YAML file says, else none]
         zero: One zero reading for all loads of a pose, or one for each.
         growth: Noise that grows with the displacement: its share.
+        force_error: How far each component of a force is off the one written, as a share of the
+            force: 0.02 with a gauge held by hand.
         schedule: Each load alone, in steps up to it, or up and down.
         levels: Steps up to the full load.
         repeats: How often each reading is taken.
@@ -79,7 +82,7 @@ def command(
     made = simulate(
         believed,
         readings,
-        noise=_noise(noise, growth, zero, readings),
+        noise=_noise(noise, growth, force_error, zero, readings),
         schedule=Schedule(schedule.value, levels, repeats, zero.value),
         rotation_noise=None
         if noise_rotation is None
@@ -121,29 +124,32 @@ def command(
 
 
 def _noise(
-    text: str | None, growth: float, zero: Zero, plan: Measurements
+    text: str | None, growth: float, force: float, zero: Zero, plan: Measurements
 ) -> NoiseModel | Instrument | None:
     if text is None:
-        if growth:
+        if growth or force:
             raise InputError(
-                "a growing noise needs its size at rest",
-                where="--growth",
+                "noise that goes with the load needs its size at rest",
+                where="--growth" if growth else "--force-error",
                 remedy="Give --noise too, e.g. --noise '10 um'.",
             )
         return None
     if text != "stated":
         sigma = parse_size(text, "length", where="--noise", like="10 um")
-        return NoiseModel(sigma, growth, zero.value)
+        return NoiseModel(sigma, growth, zero.value, force=force)
     said = plan.noise
-    if growth:
-        raise InputError(
-            "what is stated has its own growth", where="--growth", remedy="Leave out --growth."
-        )
+    for name, given in (("--growth", growth), ("--force-error", force)):
+        if given:
+            raise InputError(
+                "what is stated goes with the load as stated",
+                where=name,
+                remedy=f"Leave out {name}.",
+            )
     if said.instrument is not None:
         return said.instrument
     if plan.sigma is not None:  # rows are drawn with their own
         usual = said.sigma or float(np.nanmedian(plan.sigma))
-        return NoiseModel(usual, said.growth or 0.0, zero.value)
+        return NoiseModel(usual, said.growth or 0.0, zero.value, force=said.force or 0.0)
     if said.sigma is None:
         raise InputError(
             "the plan states no noise",
@@ -151,4 +157,4 @@ def _noise(
             remedy="Write noise.sigma or noise.instrument into the YAML file beside the plan, or "
             "give a length, e.g. --noise '10 um'.",
         )
-    return NoiseModel(said.sigma, said.growth or 0.0, zero.value)
+    return NoiseModel(said.sigma, said.growth or 0.0, zero.value, force=said.force or 0.0)

@@ -11,8 +11,8 @@ from scipy import stats
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.identify import Fit, LackOfFit, Yardstick, lack_of_fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
-from sk120stiff.identify.checks.saturated import load_basis, pose_columns
 from sk120stiff.identify.checks.yardstick import scatter
+from sk120stiff.identify.noise.saturated import load_basis, pose_columns
 from sk120stiff.identify.solving import against_noise_alone
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements.poses import rows_by_label

@@ -18,7 +18,7 @@ from sk120stiff.effects import LoadCases
 from sk120stiff.explain.localise.localisation import OrderShare, OwnAtPoses
 from sk120stiff.identify import Fit, Yardstick
 from sk120stiff.identify.checks.left_over import left_over
-from sk120stiff.identify.checks.saturated import load_basis, pose_columns
+from sk120stiff.identify.noise.saturated import load_basis, pose_columns
 
 _LOOKS = 3  # orders in the load that are looked at, for Holm
 Own = Literal["constant", "drift", "branches"]

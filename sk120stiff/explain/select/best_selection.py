@@ -21,7 +21,7 @@ import numpy as np
 from sk120stiff.effects import Effect
 from sk120stiff.explain.select.stepwise import Selection
 from sk120stiff.identify import Fit, Problem, likelier, solve_near, yardstick
-from sk120stiff.identify.checks.growing import growing
+from sk120stiff.identify.noise.growing import growing
 from sk120stiff.identify.solving import widened_as
 from sk120stiff.measurements import Measurements, NoiseModel, candidates
 from sk120stiff.measurements.noise.law import FINEST

@@ -20,8 +20,8 @@ from scipy import stats
 
 from sk120stiff.arrays import Array
 from sk120stiff.identify.checks.left_over import left_over, orthonormal
-from sk120stiff.identify.checks.saturated import load_basis, pose_columns
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.noise.saturated import load_basis, pose_columns
 from sk120stiff.measurements.noise.law import FINEST
 from sk120stiff.measurements.noise.repeats import ENOUGH
 

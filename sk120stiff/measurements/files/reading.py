@@ -142,6 +142,12 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
             where=file.place("noise.instrument"),
             remedy="Write noise: {sigma: ..., unit: ...}, or keep the columns sx, sy, sz alone.",
         )
+    if absolute is not None and noise.force is not None:
+        raise InputError(
+            "errors of forces are those of displacements by forces, and these are positions",
+            where=file.place("noise.force"),
+            remedy="Leave noise.force out.",
+        )
     if absolute is not None and noise.instrument is not None:
         channels = along_rays(absolute.channels, noise.instrument)
         absolute = replace(absolute, channels=channels)

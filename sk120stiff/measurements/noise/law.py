@@ -11,7 +11,7 @@ An instrument that is sharper along its ray than across it makes the errors of o
 together; such readings are whitened along the ray and across it (`line_of_sight.py`).
 
 What was stated is the yardstick: no scatter overrules it. Noise that grows with the displacement
-was stated, or shows in true repeats, or within poses (`identify/checks/growing.py`): nothing else
+was stated, or shows in true repeats, or within poses (`identify/noise/growing.py`): nothing else
 tells it from a cause that grows with the load.
 """
 

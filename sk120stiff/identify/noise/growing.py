@@ -10,15 +10,15 @@ through their loads, constants, curves and branches tells their size, by restric
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg
 from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Index
-from sk120stiff.identify.checks.saturated import load_basis, pose_columns
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.noise.saturated import load_basis, pose_columns
 from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
@@ -27,6 +27,7 @@ from sk120stiff.measurements.poses import rows_by_label
 
 MOST = 0.1  # of the force or displacement that noise may be; a gauge held six degrees askew
 REACH = 7.0  # natural logarithm of how much less of it is looked for
+NEVER = 0.99  # of the force, so that any size is a number of a noise model
 CLOSE = 0.02  # natural logarithm of sizes that are as good
 INDEPENDENT = 1e-6  # of the longest column of a pose: what a column has beside the others
 
@@ -52,25 +53,69 @@ def growing(fit: Fit, least: float = STRONG) -> NoiseModel | None:
     left = _Left(fit, readings)
     if left.freedom < ENOUGH:
         return None
-    if not noise.stated:
-        noise = noise.scaled(left.factor(noise))
     best, lowest = None, left.deviance(noise, free=True) - least
     for unit in _laws(noise, readings):
-        most = float(np.log(MOST / (unit.growth + unit.force)))
-
-        def at(logarithm: float, unit: NoiseModel = unit) -> NoiseModel:
-            size = float(np.exp(logarithm))
-            return replace(unit, growth=unit.growth * size, force=unit.force * size)
-
+        sought = _Stated(left, unit) if noise.stated else _Free(left, unit)
         found = minimize_scalar(
-            lambda logarithm, at=at: left.deviance(at(logarithm), free=not noise.stated),
-            bounds=(most - REACH, most), method="bounded", options={"xatol": CLOSE},
-        )  # fmt: skip
-        if found.fun < lowest and found.x < most - 2.0 * CLOSE:
-            best, lowest = at(float(found.x)), float(found.fun)
-    if best is None or noise.stated:
-        return best
-    return best.scaled(left.factor(best))
+            sought.deviance, bounds=sought.bounds, method="bounded", options={"xatol": CLOSE}
+        )
+        likeliest = sought.noise(float(found.x))
+        small = likeliest.growth + likeliest.force < (1.0 - 2.0 * CLOSE) * MOST
+        if found.fun < lowest and small:
+            best, lowest = likeliest, float(found.fun)
+    return best
+
+
+@dataclass(frozen=True, eq=False)
+class _Stated:
+    """Sizes of a law beside a σ that was stated, by their logarithm.
+
+    Attributes:
+        left: What the readings leave.
+        unit: The law with some size.
+    """
+
+    left: _Left
+    unit: NoiseModel
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Where the logarithm may lie."""
+        most = float(np.log(MOST / (self.unit.growth + self.unit.force)))
+        return most - REACH, most
+
+    def deviance(self, logarithm: float) -> float:
+        """-2 ln L."""
+        return self.left.deviance(self.noise(logarithm), free=False)
+
+    def noise(self, logarithm: float) -> NoiseModel:
+        """The noise of that size."""
+        size = float(np.exp(logarithm))
+        return replace(self.unit, growth=self.unit.growth * size, force=self.unit.force * size)
+
+
+@dataclass(frozen=True, eq=False)
+class _Free(_Stated):
+    """The same where the readings have to tell σ too: by the logarithm of the law over σ."""
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Where the logarithm may lie."""
+        return -REACH, REACH
+
+    def deviance(self, logarithm: float) -> float:
+        """-2 ln L at the likeliest of both sizes together."""
+        return self.left.deviance(self._beside(logarithm), free=True)
+
+    def noise(self, logarithm: float) -> NoiseModel:
+        """The noise with the likeliest of both sizes together."""
+        beside = self._beside(logarithm)
+        factor = self.left.factor(beside)
+        most = max(factor * (beside.growth + beside.force) / NEVER, 1.0)
+        return beside.scaled(factor / most)
+
+    def _beside(self, logarithm: float) -> NoiseModel:
+        return replace(self.unit, sigma=self.unit.sigma * float(np.exp(-logarithm)))
 
 
 def _laws(noise: NoiseModel, readings: Measurements) -> Iterator[NoiseModel]:
@@ -79,11 +124,11 @@ def _laws(noise: NoiseModel, readings: Measurements) -> Iterator[NoiseModel]:
     if said.growth is None and readings.sigma is None:
         usual = float(np.median(np.linalg.norm(readings.moved, axis=1)))
         if usual > 0.0:
-            yield replace(noise, growth=noise.sigma / usual)
+            yield replace(noise, growth=min(noise.sigma / usual, MOST))
     if said.force is None and readings.by_force is not None:
         usual = float(np.median(np.linalg.norm(readings.by_force, axis=(1, 2)))) / np.sqrt(3.0)
         if usual > 0.0:
-            yield replace(noise, force=noise.sigma / usual)
+            yield replace(noise, force=min(noise.sigma / usual, MOST))
 
 
 class _Left:

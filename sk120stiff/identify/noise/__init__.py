@@ -1,0 +1,1 @@
+"""What single poses say of the noise, whatever the model of the arm lacks."""
