@@ -19,6 +19,7 @@ from sk120stiff.measurements.placing.slips import (
     Convention,
     markers,
     moved_at,
+    nearer,
     one_zero,
     shifted_at,
     signs_and_turns,
@@ -260,6 +261,7 @@ def _refuse_slips(
     for found_by, other in ways:
         way = found_by(cloud.some(FEWER))
         if way.changed(readings.joint_names) and way.rms < least:
+            way = nearer(cloud.some(FEWER), way)
             stands = standing(cloud.some(FEWER), way, _gravity(cloud.robot, readings))
             way, written = stands.way, _as_written(readings)
             raise OtherConvention(

@@ -189,6 +189,15 @@ class Convention:
     zero: Array
     others: tuple[Convention, ...] = ()
 
+    def of(self, share: Array, zero: Array) -> Convention:
+        """The same of what the columns are made of, (n, m) shares of others and (n,) zeros."""
+        return replace(
+            self,
+            share=self.share @ share,
+            zero=self.share @ zero + self.zero,
+            others=tuple(other.of(share, zero) for other in self.others),
+        )
+
     def expressions(self, columns: Sequence[str]) -> list[str]:
         """``-A2 + 90 deg``: every joint by names of the columns."""
         out = []
@@ -243,6 +252,13 @@ def signs_and_turns(cloud: Cloud, *, floor: bool = False) -> Convention:
     close = [way for way in rest if way.rms < ROUGHLY * best.rms]
     close.sort(key=lambda way: (*oddness(cloud, way.share, way.zero), way.rms))
     return replace(best, others=tuple(close))
+
+
+def nearer(cloud: Cloud, way: Convention) -> Convention:
+    """The convention with signs and zeros sought once more about it, where that leaves less."""
+    joints = cloud.a @ way.share.T + way.zero
+    again = signs_and_turns(replace(cloud, a=joints)).of(way.share, way.zero)
+    return again if again.rms < BETTERED * way.rms else way
 
 
 def to_the_floor(cloud: Cloud) -> Convention:

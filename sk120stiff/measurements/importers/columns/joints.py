@@ -36,6 +36,17 @@ class JointColumns:
     mapping: dict[str, str] = field(default_factory=dict)
     said: tuple[str, ...] = ()
 
+    @property
+    def sums(self) -> tuple[list[str], Array, Array]:
+        """Names of m columns, their shares (n, m) in each joint, and the joints' zeros (n,)."""
+        names = [unit_of_header(column.header)[0] for column in self.taken]
+        if not self.mapping:
+            return names, np.eye(len(names)), np.zeros(len(names))
+        terms = [parse_linear(text, "--joints").terms for text in self.mapping.values()]
+        words = list(dict.fromkeys(name for own in terms for name in own if name))
+        shares = [[own.get(word, 0.0) for word in words] for own in terms]
+        return words, np.array(shares), np.array([own.get("", 0.0) for own in terms])
+
 
 def joint_columns(
     sheet: Sheet, told: Told, actuated: tuple[str, ...], prismatic: tuple[str, ...]

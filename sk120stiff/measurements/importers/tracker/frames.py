@@ -13,7 +13,6 @@ from sk120stiff.errors import InputError, Refusal, listed
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.importers.columns.words import unit_of_header
 from sk120stiff.measurements.importers.drafting import Draft
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.placing.cloud import FEWEST, Cloud
@@ -70,7 +69,7 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
     try:
         placing = place(robot, rough)
     except InputError as error:
-        if isinstance(error, OtherConvention) and not draft.joints.mapping:
+        if isinstance(error, OtherConvention):
             raise _by_other_columns(error, draft) from error
         raise Refusal(
             f"{error.what}. These are not this robot's positions as they stand",
@@ -170,10 +169,10 @@ def stood_of(draft: Draft) -> Index:
 
 def _by_other_columns(error: OtherConvention, draft: Draft) -> Refusal:
     """The same refusal by the names of the file's own columns."""
-    columns = [unit_of_header(column.header)[0] for column in draft.joints.taken]
+    columns, shares, zeros = draft.joints.sums
 
     def told(way: Convention) -> str:
-        return f"--joints '{','.join(way.expressions(columns))}'"
+        return f"--joints '{','.join(way.of(shares, zeros).expressions(columns))}'"
 
     stands = error.standing
     return Refusal(
