@@ -26,6 +26,7 @@ from sk120stiff.explain.positions.judge.accounts import (
     families_of,
     held_out_rms,
     heldout_on,
+    nearer_as_a_whole,
     numbers_told,
     rms,
     springs_of,
@@ -195,6 +196,7 @@ def explain_positions(
         steps=steps_of(linear, found, base, seen, inside),
         families=families_of(linear, found, seen, inside),
         springs=springs_of(linear, found),
+        whole=nearer_as_a_whole(linear, found, seen, inside),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
         rigid=tuple(

@@ -22,9 +22,10 @@ from sk120stiff.identify.noise.saturated import load_basis, pose_columns
 from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
-from sk120stiff.measurements.noise.repeats import ENOUGH, STRONG
+from sk120stiff.measurements.noise.repeats import ENOUGH
 from sk120stiff.measurements.poses import rows_by_label
 
+STRONG = 15.0  # fall of -2 ln L that it takes: one in ten thousand, of two laws that are asked
 MOST = 0.1  # of the force or displacement that noise may be; a gauge held six degrees askew
 REACH = 7.0  # natural logarithm of how much less of it is looked for
 NEVER = 0.99  # of the force, so that any size is a number of a noise model

@@ -11,6 +11,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed
 from sk120stiff.identify.positions.calibrate import Calibration
+from sk120stiff.identify.positions.checks.acting_alike import acting_alike
 from sk120stiff.identify.positions.residuals.line_of_sight import by_line_of_sight
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
 from sk120stiff.identify.positions.residuals.remainder import remainder_at_other_poses
@@ -149,7 +150,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         )
     said += _few(found)
     said += [f"{name} cannot be seen: {why}." for name, why in unseen(found).items()]
-    said += _rigid(found)
+    said += _rigid(found) + acting_alike(found)
     said += [f"{joint} never moves: what is beyond it moves as one." for joint in found.still]
     if unshown := [item for item in found.frozen if not item.inside]:
         said.append(f"{_errors(unshown)} show in none of these readings and are left as they are.")

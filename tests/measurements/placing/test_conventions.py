@@ -9,6 +9,7 @@ import sk120stiff as sk
 from sk120stiff.measurements.placing.cloud import Cloud
 from sk120stiff.measurements.placing.slips import (
     Convention,
+    nearer,
     oddness,
     signs_and_turns,
     to_the_floor,
@@ -89,3 +90,27 @@ def test_a_joint_measured_against_the_floor_beside_a_wrist_the_other_way_round(o
     told = found.expressions(names)
     assert told[2] == ("-J2 + J3" if own > 0.0 else "-J2 - J3")
     assert [told[k] for k in (0, 1, 3, 4, 5)] == ["J1", "J2", "-J4", "J5", "-J6"]
+
+
+def test_signs_are_sought_once_more_about_a_sum() -> None:
+    """A beam that found the sum first has the wrist the wrong way round: what is told is whole."""
+    robot = sk.load_robot("ur5e")
+    plain = cloud_of(robot, np.array([1.0, 1.0, 1.0, -1.0, 1.0, -1.0]), np.zeros(6), seed=2)
+    columns = plain.a.copy()
+    columns[:, 2] = plain.a[:, 2] + plain.a[:, 1]
+    cloud = replace(plain, a=columns)
+    share = np.eye(6)
+    share[2, 1] = -1.0
+    rough = Convention(0.1, share, np.zeros(6))
+    found = nearer(cloud, rough)
+    assert found.rms < 3.0 * NOISE
+    told = found.expressions([f"J{k}" for k in range(1, 7)])
+    assert told == ["J1", "J2", "-J2 + J3", "-J4", "J5", "-J6"]
+
+
+def test_a_convention_of_sums_is_one_of_their_columns() -> None:
+    first = Convention(0.0, np.array([[1.0, 0.0], [-1.0, 1.0]]), np.array([0.0, np.pi / 2]))
+    again = Convention(0.0, np.diag([1.0, -1.0]), np.array([0.0, np.pi])).of(
+        first.share, first.zero
+    )
+    assert again.expressions(["J2", "J3"]) == ["J2", "J2 - J3 + 90 deg"]

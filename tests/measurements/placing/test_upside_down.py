@@ -1,5 +1,6 @@
 """An arm whose base may be turned over: what is up in the file says which way it stands."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -98,6 +99,19 @@ def test_an_import_tells_both(tmp_path: Path, cloud: Cloud) -> None:
     remedy = caught.value.remedy or ""
     assert "give --joints '-A1,A2 - 90 deg,A3 + 90 deg,A4,A5,A6'. The base then" in remedy
     assert "--joints 'A1,A2 + 90 deg,A3 + 90 deg,A4,A5,A6'" in remedy
+
+
+def test_advice_given_about_sums_is_one_that_can_be_given(tmp_path: Path, cloud: Cloud) -> None:
+    """It was told for the YAML file, which an import has yet to write, and about what was given."""
+    told = Told(joints=("-(A1)", "A2", "A3 - 90 deg", "A4", "A5", "A6"))
+    with pytest.raises(Refusal) as caught:
+        import_readings(written(tmp_path, cloud), cloud.robot, told)
+    remedy = caught.value.remedy or ""
+    advice = re.search("give --joints '([^']*)'", remedy)
+    assert advice is not None and "YAML" not in remedy
+    again = Told(joints=tuple(advice[1].split(",")))
+    found = import_readings(written(tmp_path, cloud), cloud.robot, again)
+    assert not any("upside down" in doubt for doubt in found.doubts)
 
 
 @pytest.mark.parametrize(

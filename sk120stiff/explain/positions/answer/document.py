@@ -64,6 +64,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
         "budget": share_entries(answer.budget),
         "budget_joints": share_entries(answer.joints_budget),
         "springs_share": answer.springs,
+        "whole_heldout_um": um(answer.whole),
         "remainder": {**remainder_entry(final), "where": list(answer.where)},
         "probabilities": [
             {"name": name, "probability": min(p, SURE), "kind": "marginal", "place": None}

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 EVEN = 0.5  # probability below which a name is not likely by itself
 SURE = 0.95  # probability of a name that is settled
 HARDLY = 0.01  # probability of an alternative below which it has no line of its own
+LEAST = 5e-4  # share of the gap that is nothing
 APART = 0.05  # share by which the gap to first order may be another than the exact one, untold
 
 
@@ -89,6 +90,8 @@ class Explained:
         families: Family → rms per axis that its causes take off the held-out gap together [m].
         springs: What springs in all joints would take off the held-out gap beside the named causes,
             as a share of it; None where they are named, or nothing bends the arm.
+        whole: Rms that all errors of geometry and all springs together, none of them named, leave
+            at poses left out, where that is clearly less than the model leaves [m]; else None.
         dropped: What fitted and is not named, in sentences.
         hidden: Candidates that do not show in these positions at all.
         rigid: Springs of drives that were looked for and not named.
@@ -115,6 +118,7 @@ class Explained:
     steps: tuple[GapStep, ...]
     families: dict[str, float]
     springs: float | None
+    whole: float | None
     dropped: tuple[str, ...]
     hidden: tuple[str, ...]
     rigid: tuple[Effect, ...]
@@ -190,6 +194,8 @@ class Explained:
             return f"{said} together with errors of geometry, from which its size is not told"
         if own and all(at for _, at in own):
             return f"alone {said}; beside the others its value comes out as nothing"
+        if item.gain.share < LEAST:
+            return f"takes nothing off{of} beside the others"
         return said
 
     def shares(self) -> tuple[str, ...]:

@@ -98,6 +98,12 @@ def next_step_of_positions(answer: Explained) -> str:
             f"best_guess.yaml is off by {1e6 * answer.guess_heldout:.4g} {unit} there: nearer, for "
             "reasons that are not confirmed."
         )
+    if answer.whole is not None:
+        said.append(
+            "All errors of geometry and springs together, none of them named, are off by "
+            f"{1e6 * answer.whole:.4g} {unit} there: to compensate with, take the model of "
+            "'sk120stiff identify DATA --out calibrated.yaml', which fits them all."
+        )
     if answer.verdict == "outside":
         said.append(
             "Trust it no farther than poses like those measured: more is left than the noise makes."

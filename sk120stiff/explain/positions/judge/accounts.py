@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import LoadError, Weighing
+from sk120stiff.effects import Geometric, LoadError, Weighing
 from sk120stiff.errors import listed
 from sk120stiff.explain.findings import Contender, Step
 from sk120stiff.explain.judge.borne_out import BorneOut, name_of, shown
@@ -23,6 +23,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import warn_of_references
 
 LISTED = 6  # rows of a held-out file that are told one by one
+NEARER = 0.9  # of the gap at poses left out, below which a calibration of everything is told
 RIGID = "rigid"  # the model that has no effect
 
 
@@ -165,6 +166,27 @@ def springs_of(linear: Linear, found: Chosen) -> float | None:
     noise = linear.noise(found.order)
     before = rms(linear.gap(found.order, noise, held_out=True))
     return 1.0 - rms(linear.gap((*found.order, *springs), noise, held_out=True)) / before
+
+
+def nearer_as_a_whole(
+    linear: Linear, found: Chosen, seen: Calibration, inside: Index
+) -> float | None:
+    """Rms at poses left out of all errors of geometry and all springs together [m].
+
+    That is what `identify` fits, without a name for any. None where the names leave no more, or
+    nearly so, and where only what loads do was read.
+    """
+    if seen.problem.channels.displacements_alone:
+        return None
+    whole = tuple(
+        e
+        for e, effect in enumerate(linear.candidates)
+        if isinstance(effect, Geometric) or effect.joint_spring
+    )
+    if not set(whole) - set(found.order):
+        return None
+    left = held_out_rms(linear, whole, seen, inside)
+    return left if left < NEARER * held_out_rms(linear, found.order, seen, inside) else None
 
 
 def suspects_of(

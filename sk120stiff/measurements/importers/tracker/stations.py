@@ -234,10 +234,12 @@ def _told(
             if (more := [n for n, of in names.items() if of == first and n != first])
         ]
     else:
-        fits = f"{1e3 * left[way]:.3g} mm are left"
-        if np.isfinite(own := left.get(("station", *way), np.inf)):
-            fits += f", {1e3 * own:.3g} mm with one of each"
-        unused.append(f"column station: one frame of the tracker fits all {len(names)} ({fits})")
+        fits, how = "is taken for", "they do not tell"
+        if np.isfinite(left[way]):
+            fits, how = "fits", f"{1e3 * left[way]:.3g} mm are left"
+            if np.isfinite(own := left.get(("station", *way), np.inf)):
+                how += f", {1e3 * own:.3g} mm with one of each"
+        unused.append(f"column station: one frame of the tracker {fits} all {len(names)} ({how})")
         said += _why_one(draft, names, few, sag)
     if "series" in way:
         before = left[tuple(h for h in way if h != "series")]
