@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from sk120stiff.arrays import on_one_thread
 from sk120stiff.data_checks import refuse_slips, without_copies, without_stuck, without_wild
 from sk120stiff.effects import Catalogue, Effect
-from sk120stiff.errors import InputError, ToolkitWarning
+from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.advise.best_guess import contenders
 from sk120stiff.explain.advise.consequences import completed
 from sk120stiff.explain.answer.explanation import Explanation, Verdict
@@ -292,7 +293,8 @@ def _selections(model: Model, measurements: Measurements, options: Options) -> t
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
     first = fit(base_model, measurements, noise=noise_candidates(measurements)[0])
-    measurements = with_by_force(first.model, measurements)
+    with suppress(Refusal):  # then no error of a force is asked for
+        measurements = with_by_force(first.model, measurements)
     soft, at_first = brought(first, candidates, alpha=options.alpha, prior=options.prior)
     known: dict[tuple[Effect | None, bool], Linearised | None] = {(None, True): at_first}
 

@@ -46,7 +46,7 @@ def fit_displacements(
         used = with_by_force(first.model, used)
     fits = [solve(Problem(model, used, each), method=method) for each in open_]
     found = fits[likelier(support(fits, method))]
-    if noise is None and (grown := growing(found)) is not None:
+    if noise is None and not robust and (grown := growing(found)) is not None:
         known = with_by_force(found.model, used)
         found = solve(Problem(model, known, grown), method=method)
     if robust:

@@ -76,6 +76,8 @@ def verdict_document(
             "source": answer.yardstick.source,
             "sigma_um": micrometres(answer.yardstick.sigma),
             "degrees_of_freedom": answer.yardstick.freedom,
+            "growth": answer.noise.growth,
+            "force": answer.noise.force,
             "decided": list(noise_words(answer)),
             "set_aside": [
                 {

@@ -10,6 +10,7 @@ through their loads, constants, curves and branches tells their size, by restric
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from scipy import linalg
 from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Index
+from sk120stiff.errors import Refusal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.noise.saturated import load_basis, pose_columns
 from sk120stiff.identify.solve.forces import with_by_force
@@ -50,7 +52,8 @@ def growing(fit: Fit, least: float = STRONG) -> NoiseModel | None:
         return None
     readings = fit.problem.measurements
     if readings.by_force is None:
-        readings = with_by_force(fit.model, readings)
+        with suppress(Refusal):  # an arm that hardly holds its loads tells no more than growth
+            readings = with_by_force(fit.model, readings)
     left = _Left(fit, readings)
     if left.freedom < ENOUGH:
         return None

@@ -15,11 +15,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.noise.model_form import rows_of_poses
-from sk120stiff.measurements.noise.whitening import Whitens
 from sk120stiff.measurements.poses import rows_by_label
 
 
@@ -39,55 +37,61 @@ def by_force_of(measurements: Measurements) -> Array:
 
 
 class ForceWhitener:
-    """V^(-1/2) with the errors of forces: the noise's whitener, then a Cholesky factor per pose.
+    """V^(-1/2) with the errors of forces: a Cholesky factor per reading, then the shared zero.
+
+    With S of each reading its own covariance (3, 3) and Z Zᵀ that of the error which rows of a
+    group share, V = S + Z Zᵀ: what S whitens is shortened along three directions of each group.
 
     Args:
-        noise: Whitener of the instrument's noise; readings of two poses have nothing in common.
-        share: Standard uncertainty of every component of a force over the force.
-        measurements: The N readings, with what forces move.
-        weights: (N,) share of its information that each reading keeps; None: all of it.
+        own: (N, 3) variance of each row's own error, m², positive; infinite where not read.
+        shared: (N, 3) variance of the error that rows of a group share, m².
+        group: (N,) number of the group of each row.
+        axes: (N, 3, 3) unit vectors, as rows, along which these variances are; None: the axes of
+            the readings. Rows that lack an axis have none of their own.
+        moved: (N, 3, 3) standard uncertainty that the components of the force bring, m.
     """
 
     def __init__(
-        self,
-        noise: Whitens,
-        share: float,
-        measurements: Measurements,
-        weights: Array | None = None,
+        self, own: Array, shared: Array, group: Integers, axes: Array | None, moved: Array
     ) -> None:
-        self._noise = noise
-        self.n_readings, self.reading = noise.n_readings, noise.reading
-        moved = share * by_force_of(measurements)
-        if weights is not None:
-            moved = moved / np.sqrt(weights)[:, None, None]
-        white = noise.apply(_apart(moved, measurements))
-        self._alike: list[tuple[Index, Array]] = []
-        """Of poses with as many rows: these (m, r), and the inverses (m, r, r) of their factors."""
-        rows = rows_of_poses(measurements)
-        self.logdet = noise.logdet
+        self.n_readings = len(own)
+        read = np.isfinite(own)
+        self._read = read
+        self.reading: Index = np.nonzero(read)[0]
+        """(R,) reading of each number that `apply` whitens."""
+        turn = np.eye(3) if axes is None else axes
+        both = read[:, :, None] & read[:, None, :]
+        diagonal = np.where(read, own, 1.0)[:, :, None] * np.eye(3)
+        inner = np.swapaxes(turn, -1, -2) @ diagonal @ turn
+        inner += np.where(both, moved @ np.swapaxes(moved, 1, 2), 0.0)
+        factor = np.linalg.cholesky(inner)
+        self._inverse = np.linalg.inv(factor)
+        errors = np.swapaxes(turn, -1, -2) @ (np.sqrt(shared)[:, :, None] * np.eye(3))
+        white = self._whitened(errors)
+        pivots = np.diagonal(factor, axis1=1, axis2=2)[read]
+        logdet = 2.0 * float(np.log(pivots).sum())
+        self._alike: list[tuple[Index, Array, Array]] = []
+        """Of groups with as many numbers: these (m, r), directions (m, r, 3) of their shared error,
+        and by how much what lies along each is shortened (m, 3)."""
+        numbers = rows_by_label(np.asarray(group)[self.reading])
+        for places in rows_by_label(np.array([len(each) for each in numbers])):
+            same = np.stack([numbers[k] for k in places])
+            U, size, _ = np.linalg.svd(white[same], full_matrices=False)
+            logdet += float(np.log1p(size**2).sum())
+            self._alike.append((same, U, 1.0 - 1.0 / np.sqrt(1.0 + size**2)))
+        self.logdet = logdet
         """Natural logarithm of det V, over all numbers that were read; V in m²."""
-        for places in rows_by_label(np.array([len(each) for each in rows])):
-            same = np.stack([rows[k] for k in places])
-            Z = white[same]
-            factor = np.linalg.cholesky(np.eye(same.shape[1]) + Z @ np.swapaxes(Z, 1, 2))
-            self.logdet += 2.0 * float(np.log(np.diagonal(factor, axis1=1, axis2=2)).sum())
-            self._alike.append((same, np.linalg.inv(factor)))
 
     def apply(self, x: ArrayLike) -> Array:
         """As `Whitener.apply`."""
-        white = self._noise.apply(x)
-        flat = white.reshape(len(white), -1)
-        for rows, inverse in self._alike:
-            flat[rows] = inverse @ flat[rows]
-        return flat.reshape(white.shape)
+        values = np.asarray(x, dtype=np.float64)
+        white = self._whitened(values.reshape(self.n_readings, 3, -1))
+        for rows, U, shorter in self._alike:
+            along = np.swapaxes(U, 1, 2) @ white[rows]
+            white[rows] -= U @ (shorter[:, :, None] * along)
+        return white.reshape(len(white), *values.shape[2:])
 
-
-def _apart(moved: Array, measurements: Measurements) -> Array:
-    """(N, 3, 3k) columns (N, 3, 3) with a place of their own for each of the k rows of a pose."""
-    count = len(moved)
-    place = np.zeros(count, dtype=np.intp)
-    for rows in rows_by_label(measurements.pose_index):
-        place[rows] = np.arange(len(rows))
-    out = np.zeros((count, 3, int(place.max()) + 1, 3))
-    out[np.arange(count), :, place] = moved
-    return out.reshape(count, 3, -1)
+    def _whitened(self, columns: Array) -> Array:
+        """(R, k) of (N, 3, k) by the own errors alone."""
+        known = np.where(self._read[:, :, None], columns, 0.0)
+        return np.asarray((self._inverse @ known)[self._read])

@@ -191,9 +191,14 @@ class NoiseModel:
             own, zero, group = own + zero, np.zeros_like(own), np.arange(len(own))
         if weights is not None:
             own = own / weights[:, None]
-        noise: Whitens = Whitener(own, zero, group, axes)
+        noise: Whitens
         if self.force > 0:
-            noise = ForceWhitener(noise, self.force, measurements, weights)
+            moved = self.force * by_force_of(measurements)
+            if weights is not None:
+                moved = moved / np.sqrt(weights)[:, None, None]
+            noise = ForceWhitener(own, zero, group, axes, moved)
+        else:
+            noise = Whitener(own, zero, group, axes)
         return FormWhitener(noise, self.form, measurements) if self.form else noise
 
     def covariance(self, measurements: Measurements, sizes: ArrayLike | None = None) -> Array:

@@ -156,6 +156,8 @@ def command(
         "sigma_um": None if noise.sigma is None else noise.sigma * 1e6,
         "sigma_from": noise.source,
         "sigma_stated": noise.source == "stated",
+        "noise_growth": found.problem.noise.growth,
+        "noise_force": found.problem.noise.force,
         "noise_floor_um": None if noise.floor is None else noise.floor * 1e6,
         "chi_square": found.chi_square,
         "degrees_of_freedom": found.degrees_of_freedom,
