@@ -54,7 +54,7 @@ from sk120stiff.identify import (
     gauges_as_displacements,
     refuse_unusable,
 )
-from sk120stiff.identify.solve.forces import with_by_force
+from sk120stiff.identify.solve.forces import moved_alike, with_by_force
 from sk120stiff.identify.uncertainty.compliant_parts import beside_parts
 from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements, NoiseModel, as_displacements, decided
@@ -141,6 +141,12 @@ def explain_displacements(
     tell("searching the catalogue", 0.05)
     first, under = _selections(model, used, options)
     found, noise = best_selection(used, first, under)
+    if noise.force:
+        known = with_by_force(found.final.model, used)
+        if not moved_alike(known, found.final.problem.measurements):
+            used = known
+            first, under = _selections(model, used, options)
+            found, noise = best_selection(used, first, under)
     base = held_against(noise, found.base)
     tell("confirming on other poses", 0.3)
     found, named, account = judged_names(found, base, under, seed=options.seed)
@@ -293,8 +299,9 @@ def _selections(model: Model, measurements: Measurements, options: Options) -> t
     undescribed = len({noise.zero for noise in noise_candidates(measurements)}) > 1
 
     first = fit(base_model, measurements, noise=noise_candidates(measurements)[0])
-    with suppress(Refusal):  # then no error of a force is asked for
-        measurements = with_by_force(first.model, measurements)
+    if measurements.by_force is None:
+        with suppress(Refusal):  # then no error of a force is asked for
+            measurements = with_by_force(first.model, measurements)
     soft, at_first = brought(first, candidates, alpha=options.alpha, prior=options.prior)
     known: dict[tuple[Effect | None, bool], Linearised | None] = {(None, True): at_first}
 

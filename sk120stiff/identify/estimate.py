@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.noise.growing import growing
+from sk120stiff.identify.noise.growing import may_be_noise
 from sk120stiff.identify.robust import far_off, solve_robustly
 from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.solve.problem import Problem
@@ -46,12 +46,11 @@ def fit_displacements(
         used = with_by_force(first.model, used)
     fits = [solve(Problem(model, used, each), method=method) for each in open_]
     found = fits[likelier(support(fits, method))]
-    if noise is None and not robust and (grown := growing(found)) is not None:
-        known = with_by_force(found.model, used)
-        found = solve(Problem(model, known, grown), method=method)
+    told = None if noise is not None or robust else may_be_noise(found)
     if robust:
         found = solve_robustly(found.problem, method=method)
     reasons = () if noise is not None else decided(found.problem.noise, used)
+    reasons += () if told is None else (told,)
     return _checked(replace(found, reasons=reasons), measurements)
 
 

@@ -51,6 +51,9 @@ def join_measurements(parts: Sequence[Measurements]) -> Measurements:
     gauges = any(part.directions is not None for part in parts)
     changes: dict[str, Any] = {"zero": first.zero if len(words) == 1 else "shared"}
     for name in PER_ROW:
+        if name == "by_force":  # of a model, and not of a file
+            changes[name] = None
+            continue
         values = [_along(part) if gauges and name == "directions" else getattr(part, name)
                   for part in parts]  # fmt: skip
         if any((value is None) != (values[0] is None) for value in values):

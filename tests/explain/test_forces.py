@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
+from sk120stiff.explain import Options
 from tests.explain.readings import answered, hidden
 from tests.explain.test_noise import DRAG
 from tests.hidden.generator.causes_elastic import BaseRocking
@@ -39,3 +40,13 @@ def test_friction_is_friction(springs: Model) -> None:
     answer = answered(springs, hidden(DRAG, schedule="up_down", loads=4, poses=8, sigma=5e-6))
     assert answer.findings
     assert answer.noise.force == 0.0
+
+
+def test_a_soft_base_moves_what_forces_move(springs: Model) -> None:
+    """The compliance is that of the arm as it was found, not as it was believed."""
+    cause = BaseRocking("base_link", {"x": 3e-6, "y": 3e-6})
+    readings = hidden(cause, sigma=SIGMA, force_error=0.02, poses=12, loads=8)
+    answer = answered(springs, readings, Options(only=("base_rocking",)))
+    assert [finding.effect.name for finding in answer.findings] == ["base_rocking"]
+    assert answer.noise.force == pytest.approx(0.02, rel=0.2)
+    assert answer.set_aside == ()

@@ -146,6 +146,13 @@ def _noise(
                 remedy=f"Leave out {name}.",
             )
     if said.instrument is not None:
+        if said.growth or said.force:
+            raise InputError(
+                "an instrument's ray and noise that goes with the load are drawn one at a time",
+                where="--noise stated",
+                remedy="Write noise.sigma in the place of noise.instrument, or leave out "
+                "noise.growth and noise.force.",
+            )
         return said.instrument
     if plan.sigma is not None:  # rows are drawn with their own
         usual = said.sigma or float(np.nanmedian(plan.sigma))

@@ -196,7 +196,9 @@ def explain_positions(
         steps=steps_of(linear, found, base, seen, inside),
         families=families_of(linear, found, seen, inside),
         springs=springs_of(linear, found),
-        whole=nearer_as_a_whole(linear, found, seen, inside),
+        whole=None
+        if options.only or options.exclude
+        else nearer_as_a_whole(linear, found, seen, inside),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
         rigid=tuple(

@@ -17,13 +17,16 @@ import numpy as np
 from scipy import linalg
 from scipy.optimize import minimize_scalar
 
-from sk120stiff.arrays import Index
-from sk120stiff.errors import Refusal
+from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.effects import LoadCases
+from sk120stiff.errors import Refusal, two_digits
 from sk120stiff.identify.fit import Fit
-from sk120stiff.identify.noise.saturated import load_basis, pose_columns
+from sk120stiff.identify.noise.saturated import load_basis, load_directions, pose_columns
+from sk120stiff.identify.robust import far_off
 from sk120stiff.identify.solve.forces import with_by_force
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.measurements import Measurements, NoiseModel
+from sk120stiff.measurements.noise.law import WITHIN
 from sk120stiff.measurements.noise.repeats import ENOUGH
 from sk120stiff.measurements.poses import rows_by_label
 
@@ -32,6 +35,7 @@ MOST = 0.1  # of the force or displacement that noise may be; a gauge held six d
 REACH = 7.0  # natural logarithm of how much less of it is looked for
 NEVER = 0.99  # of the force, so that any size is a number of a noise model
 CLOSE = 0.02  # natural logarithm of sizes that are as good
+FEWEST = 4  # readings of a pose beyond the directions of its loads
 INDEPENDENT = 1e-6  # of the longest column of a pose: what a column has beside the others
 
 
@@ -46,15 +50,21 @@ def growing(fit: Fit, least: float = STRONG) -> NoiseModel | None:
         fit: A fitted model; its noise has no model-form error.
         least: By which -2 ln L has to fall.
     """
-    noise = fit.problem.noise
+    noise, readings = fit.problem.noise, fit.problem.measurements
+    if noise.growth and readings.noise.growth is None:  # repeats told it, by the one law they know
+        noise = replace(noise, growth=0.0)
     described = noise.growth or noise.force or noise.form
     if described or (noise.known and not noise.stated):
         return None
-    readings = fit.problem.measurements
     if readings.by_force is None:
         with suppress(Refusal):  # an arm that hardly holds its loads tells no more than growth
             readings = with_by_force(fit.model, readings)
-    left = _Left(fit, readings)
+    told = _with_loads_enough(fit.problem.load_cases)
+    if not told.any():
+        return None
+    weights = fit.problem.weights
+    some = None if weights is None else weights[told]
+    left = _Left(Problem(fit.model, readings.select(told), noise, some), fit.gap[told])
     if left.freedom < ENOUGH:
         return None
     best, lowest = None, left.deviance(noise, free=True) - least
@@ -139,14 +149,12 @@ class _Left:
     """What all that is smooth in the loads of single poses leaves of a gap.
 
     Args:
-        fit: Gives the gap.
-        readings: Its readings, with what their forces move.
+        problem: N readings, with what their forces move.
+        gap: (N, 3) measured minus predicted [m].
     """
 
-    def __init__(self, fit: Fit, readings: Measurements) -> None:
-        problem = fit.problem
-        self._problem: Problem = replace(problem, measurements=readings)
-        self._gap = fit.gap
+    def __init__(self, problem: Problem, gap: Array) -> None:
+        self._problem, self._gap = problem, gap
         basis = load_basis(problem.load_cases, jump=True, cubic=True, branches=True)
         self._columns = pose_columns(basis)
         white = problem.whitener.apply(self._columns)
@@ -156,7 +164,7 @@ class _Left:
             size = np.abs(np.diag(R))
             rank = int((size > INDEPENDENT * size.max(initial=0.0)).sum())
             self._own.append((rows, np.sort(order[:rank]).astype(np.intp)))
-        self.freedom = len(problem.pose) - sum(len(own) for _, own in self._own)
+        self.freedom = sum(len(rows) - len(own) for rows, own in self._own)
         """Degrees of freedom."""
 
     def deviance(self, noise: NoiseModel, *, free: bool) -> float:
@@ -181,3 +189,33 @@ class _Left:
             square += float(left @ left)
             price += 2.0 * float(np.log(np.abs(np.diag(R))).sum())
         return max(square, 1e-300), price
+
+
+def _with_loads_enough(load_cases: LoadCases) -> Mask:
+    """(N,) readings at poses whose loads tell a constant and a curve beside lines.
+
+    Elsewhere lost motion and gears that harden would look like noise.
+    """
+    out = np.zeros(load_cases.count, dtype=bool)
+    for rows in rows_by_label(load_cases.pose):
+        out[rows] = len(rows) >= len(load_directions(load_cases, rows)) + FEWEST
+    return out
+
+
+def may_be_noise(fit: Fit) -> str | None:
+    """What is to be said where single poses scatter as noise does that goes with the load.
+
+    The model that was fitted may lack a cause that does the same, so that nothing is taken for it.
+    """
+    found = None if len(far_off(fit)) else growing(fit)
+    if found is None:
+        return None
+    share, key = (found.force, "force") if found.force else (found.growth, "growth")
+    told = f"every component of a force is off by {two_digits(100.0 * share)} % of the force"
+    if not found.force:
+        told = f"noise grows by {two_digits(100.0 * share)} % of the displacement"
+    return (
+        f"{WITHIN} scatter as where {told}: a gauge held by hand makes it, or a cause that is not "
+        "smooth in the load (lost motion, friction, teeth). 'sk120stiff explain' asks for both; "
+        f"'noise: {{{key}: {share:.2g}}}' in the YAML file states it."
+    )

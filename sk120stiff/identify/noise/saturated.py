@@ -14,6 +14,8 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import LoadCases
 from sk120stiff.measurements.poses import rows_by_label
 
+MOMENT = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # a moment of 1 N·m counts like 2 N
+
 
 def load_basis(
     load_cases: LoadCases, *, jump: bool = False, cubic: bool = False, branches: bool = False
@@ -24,14 +26,13 @@ def load_basis(
     enough, `jump` adds a constant (lost motion), `cubic` what grows with the cube of the load
     (hardening), and `branches` a constant and a slope for unloading (friction).
     """
-    scale = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # a moment of 1 N·m counts like 2 N
-    loads = load_cases.wrench * scale
+    loads = load_cases.wrench * MOMENT
     size = max(float(np.abs(loads).max(initial=0.0)), 1e-300)
     parts: list[tuple[Index, Array]] = []
     for rows in rows_by_label(load_cases.pose):
-        _, singular, Vt = np.linalg.svd(loads[rows] / size, full_matrices=False)
-        rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0
-        basis = loads[rows] / size @ Vt[:rank].T
+        ways = load_directions(load_cases, rows)
+        rank = len(ways)
+        basis = loads[rows] / size @ ways.T
         along = np.linalg.norm(basis, axis=1, keepdims=True)
         if jump and len(rows) >= rank + 3:
             basis = np.hstack([basis, np.sign(along)])
@@ -47,6 +48,18 @@ def load_basis(
     for rows, basis in parts:
         out[rows, : basis.shape[1]] = basis
     return out
+
+
+def load_directions(load_cases: LoadCases, rows: Index) -> Array:
+    """(r, 6) principal directions of the loads of one pose, of those that are more than rounding.
+
+    Args:
+        load_cases: All readings.
+        rows: Those of the pose.
+    """
+    _, singular, Vt = np.linalg.svd(load_cases.wrench[rows] * MOMENT, full_matrices=False)
+    rank = int((singular > 0.02 * singular[0]).sum()) if singular[0] > 0.0 else 0
+    return np.asarray(Vt[:rank])
 
 
 def pose_columns(basis: Array) -> Array:

@@ -10,6 +10,7 @@ from sk120stiff.effects import load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 
+ALIKE = 0.1  # of what forces move, by which two models of an arm may differ
 STEP = 0.01  # of the force, over which the displacement is taken for a line
 
 
@@ -33,3 +34,13 @@ def with_by_force(model: Model, measurements: Measurements) -> Measurements:
         )
         moved[:, :, axis] = (ahead - behind) / (2.0 * STEP)
     return replace(measurements, by_force=moved)
+
+
+def moved_alike(one: Measurements, other: Measurements) -> bool:
+    """Do forces move the point about as much, on average, by both?"""
+    sizes = [
+        float(np.sqrt(np.mean(each.by_force**2)))
+        for each in (one, other)
+        if each.by_force is not None
+    ]
+    return len(sizes) < 2 or abs(sizes[0] - sizes[1]) <= ALIKE * sizes[1]

@@ -142,9 +142,17 @@ def _assemble(table: Table, roles: Roles, file: SettingsFile, data_hash: str) ->
             where=file.place("noise.instrument"),
             remedy="Write noise: {sigma: ..., unit: ...}, or keep the columns sx, sy, sz alone.",
         )
-    if absolute is not None and noise.force is not None:
+    if noise.force and noise.sigma is None and rows.sigma is None:
         raise InputError(
-            "errors of forces are those of displacements by forces, and these are positions",
+            "how far off forces are is stated, and what one reading is worth is not",
+            where=file.place("noise.force"),
+            remedy="Write noise.sigma too, or leave noise.force out: single poses with "
+            "loads enough tell it.",
+        )
+    if absolute is not None and absolute.channels.present != ("shift",) and noise.force:
+        raise InputError(
+            "errors of forces are those of displacements of one point under forces, and other "
+            "readings are here",
             where=file.place("noise.force"),
             remedy="Leave noise.force out.",
         )

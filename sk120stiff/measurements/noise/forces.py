@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.noise.whitening import as_columns
 from sk120stiff.measurements.poses import rows_by_label
 
 
@@ -84,7 +85,7 @@ class ForceWhitener:
 
     def apply(self, x: ArrayLike) -> Array:
         """As `Whitener.apply`."""
-        values = np.asarray(x, dtype=np.float64)
+        values = as_columns(x, self.n_readings)
         white = self._whitened(values.reshape(self.n_readings, 3, -1))
         for rows, U, shorter in self._alike:
             along = np.swapaxes(U, 1, 2) @ white[rows]

@@ -299,12 +299,12 @@ def _witness(measurements: Measurements) -> str:
 def _described(measurements: Measurements, zero: Literal["shared", "separate"]) -> NoiseModel:
     stated, growth = measurements.noise.sigma, measurements.noise.growth
     of_rows = measurements.sigma is not None
-    found = None
-    if not of_rows and (stated is None or growth is None):
+    force = measurements.noise.force or 0.0
+    found = None  # repeats scatter by errors of forces too, and are counted once
+    if not of_rows and not force and (stated is None or growth is None):
         found = repeated(measurements, zero, grows=growth is None)
     if growth is None:
         growth = found.growth if found is not None else 0.0
-    force = measurements.noise.force or 0.0
     if stated is not None:
         return NoiseModel(stated, growth, zero, force=force)
     if measurements.sigma is not None:

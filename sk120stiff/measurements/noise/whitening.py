@@ -77,12 +77,7 @@ class Whitener:
         R numbers were read, 3N at most. `x` is in the axes in which the displacements were
         reported; what it has in an axis that was not read does not matter.
         """
-        values = np.asarray(x, dtype=np.float64)
-        if values.shape[:2] != (self.n_readings, 3) or values.ndim > 3:
-            raise InputError(
-                f"an array of shape {values.shape} cannot be whitened",
-                remedy=f"Give ({self.n_readings}, 3) or ({self.n_readings}, 3, k).",
-            )
+        values = as_columns(x, self.n_readings)
         columns = values.reshape(self.n_readings, 3, -1)
         if self._read is not None:
             columns = np.where(self._read[:, :, None], columns, 0.0)
@@ -96,6 +91,21 @@ class Whitener:
             out[rows] = block * scale[..., None]
         numbers = out.reshape(3 * self.n_readings, -1) if self._read is None else out[self._read]
         return numbers.reshape(len(numbers), *values.shape[2:])
+
+
+def as_columns(x: ArrayLike, count: int) -> Array:
+    """The array, if it is (count, 3) or (count, 3, k).
+
+    Raises:
+        InputError: It is of another shape.
+    """
+    values = np.asarray(x, dtype=np.float64)
+    if values.shape[:2] != (count, 3) or values.ndim > 3:
+        raise InputError(
+            f"an array of shape {values.shape} cannot be whitened",
+            remedy=f"Give ({count}, 3) or ({count}, 3, k).",
+        )
+    return values
 
 
 def _blocks(group: Integers) -> list[Integers]:

@@ -198,10 +198,14 @@ class Convention:
             others=tuple(other.of(share, zero) for other in self.others),
         )
 
-    def expressions(self, columns: Sequence[str]) -> list[str]:
-        """``-A2 + 90 deg``: every joint by names of the columns."""
+    def expressions(self, columns: Sequence[str], slides: Sequence[bool] = ()) -> list[str]:
+        """``-A2 + 90 deg``: every joint by names of the columns; `slides` (n,) those in metres."""
         out = []
-        for own, zero in zip(self.share, self.zero, strict=True):
+        for k, (own, zero) in enumerate(zip(self.share, self.zero, strict=True)):
+            if k < len(slides) and slides[k]:
+                told = f" {'-' if zero < 0 else '+'} {abs(zero):g} m" if zero else ""
+                out.append(_expression(own, columns) + told)
+                continue
             degrees = (np.degrees(zero) + 180.0) % 360.0 - 180.0
             shown = f"{round(abs(degrees), 2):g}"
             constant = f" {'-' if degrees < 0 else '+'} {shown} deg" if float(shown) else ""

@@ -98,10 +98,25 @@ def test_a_file_says_it_and_is_written_with_it(tmp_path: Path) -> None:
     assert sk.read(tmp_path / "pulls.csv").noise == NoiseStatement(SIGMA, force=SHARE)
 
 
+def test_it_stands_beside_the_noise_of_a_reading(tmp_path: Path) -> None:
+    source = sk.bundled_robots()["motoman_sk120"] / "data" / "table2_measured.csv"
+    bare = replace(sk.read(source), noise=NoiseStatement(force=SHARE))
+    sk.write_measurements(bare, tmp_path / "pulls.csv")
+    with pytest.raises(InputError, match=r"noise\.force.*what one reading is worth is not"):
+        sk.read(tmp_path / "pulls.csv")
+
+
+def test_what_cannot_be_whitened_is_refused() -> None:
+    with pytest.raises(InputError, match="cannot be whitened"):
+        NoiseModel(SIGMA, force=SHARE).whitener(readings()).apply(np.zeros((3, 22)))
+
+
 def test_positions_have_none(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text(
         "pose,shoulder_pan_joint[deg],x[mm],y[mm],z[mm]\nA,0,1,2,3\nB,10,2,3,4\n"
     )
-    (tmp_path / "p.yaml").write_text("position: {frame: base}\nnoise: {force: 0.02}\n")
-    with pytest.raises(InputError, match="these are positions"):
+    (tmp_path / "p.yaml").write_text(
+        "position: {frame: base}\nnoise: {sigma: 10, unit: um, force: 0.02}\n"
+    )
+    with pytest.raises(InputError, match="other readings are here"):
         sk.read(tmp_path / "p.csv")

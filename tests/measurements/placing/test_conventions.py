@@ -114,3 +114,5 @@ def test_a_convention_of_sums_is_one_of_their_columns() -> None:
         first.share, first.zero
     )
     assert again.expressions(["J2", "J3"]) == ["J2", "J2 - J3 + 90 deg"]
+    on_a_rail = Convention(0.0, np.eye(2), np.array([0.5, 0.0]))
+    assert on_a_rail.expressions(["rail", "J1"], [True, False]) == ["rail + 0.5 m", "J1"]

@@ -85,9 +85,10 @@ def test_an_arm_that_positions_tell_has_no_other() -> None:
     assert standing(cloud, as_it_is, np.zeros(3)).up is None
 
 
-def written(folder: Path, cloud: Cloud) -> Path:
+def written(folder: Path, cloud: Cloud, name: str = "A{}") -> Path:
     path = folder / "seen.csv"
-    head = ",".join([*(f"A{k} [rad]" for k in range(1, 7)), "x [m]", "y [m]", "z [m]"])
+    joints = (f"{name.format(k)} [rad]" for k in range(1, 7))
+    head = ",".join([*joints, "x [m]", "y [m]", "z [m]"])
     rows = (",".join(f"{v:.6f}" for v in row) for row in np.hstack([cloud.a, cloud.x]))
     path.write_text("\n".join([head, *rows]) + "\n")
     return path
@@ -101,16 +102,21 @@ def test_an_import_tells_both(tmp_path: Path, cloud: Cloud) -> None:
     assert "--joints 'A1,A2 + 90 deg,A3 + 90 deg,A4,A5,A6'" in remedy
 
 
-def test_advice_given_about_sums_is_one_that_can_be_given(tmp_path: Path, cloud: Cloud) -> None:
+@pytest.mark.parametrize("name", ["A{}", "Axis {}"])
+def test_advice_given_about_sums_is_one_that_can_be_given(
+    tmp_path: Path, cloud: Cloud, name: str
+) -> None:
     """It was told for the YAML file, which an import has yet to write, and about what was given."""
-    told = Told(joints=("-(A1)", "A2", "A3 - 90 deg", "A4", "A5", "A6"))
+    given = ("-(A1)", "A2", "A3 - 90 deg", "A4", "A5", "A6")
+    told = Told(joints=tuple(each.replace("A", name.replace("{}", "")) for each in given))
+    path = written(tmp_path, cloud, name)
     with pytest.raises(Refusal) as caught:
-        import_readings(written(tmp_path, cloud), cloud.robot, told)
+        import_readings(path, cloud.robot, told)
     remedy = caught.value.remedy or ""
     advice = re.search("give --joints '([^']*)'", remedy)
     assert advice is not None and "YAML" not in remedy
     again = Told(joints=tuple(advice[1].split(",")))
-    found = import_readings(written(tmp_path, cloud), cloud.robot, again)
+    found = import_readings(path, cloud.robot, again)
     assert not any("upside down" in doubt for doubt in found.doubts)
 
 

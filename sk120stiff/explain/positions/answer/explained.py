@@ -194,8 +194,10 @@ class Explained:
             return f"{said} together with errors of geometry, from which its size is not told"
         if own and all(at for _, at in own):
             return f"alone {said}; beside the others its value comes out as nothing"
-        if item.gain.share < LEAST:
+        if abs(item.gain.share) < LEAST:
             return f"takes nothing off{of} beside the others"
+        if item.gain.share < 0.0:
+            return f"beside the others adds {-100 * item.gain.share:.1f} %{of}"
         return said
 
     def shares(self) -> tuple[str, ...]:

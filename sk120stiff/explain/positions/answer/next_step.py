@@ -100,9 +100,9 @@ def next_step_of_positions(answer: Explained) -> str:
         )
     if answer.whole is not None:
         said.append(
-            "All errors of geometry and springs together, none of them named, are off by "
-            f"{1e6 * answer.whole:.4g} {unit} there: to compensate with, take the model of "
-            "'sk120stiff identify DATA --out calibrated.yaml', which fits them all."
+            "To compensate, all errors of geometry and springs together, none of them named, are "
+            f"nearer: off by {1e6 * answer.whole:.4g} {unit} there. 'sk120stiff identify DATA "
+            "--out calibrated.yaml' fits them all."
         )
     if answer.verdict == "outside":
         said.append(

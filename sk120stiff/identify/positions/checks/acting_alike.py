@@ -13,6 +13,7 @@ from sk120stiff.errors import listed
 from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.positions.calibrate import Calibration
 
+FAINT = 1e-6  # of a column, beside all other parameters, below which it is rounding
 ALIKE = 0.95  # cosine, beside all other parameters, from which on one may have what is another's
 
 
@@ -31,7 +32,7 @@ def acting_alike(found: Calibration) -> list[str]:
     others = [k for k in range(len(parameters)) if k not in seen]
     left = beside(orthonormal(found.jacobian[:, others]), found.jacobian[:, seen].copy())
     length = np.linalg.norm(left, axis=0)
-    kept = length > 0.0
+    kept = length > FAINT * np.linalg.norm(found.jacobian[:, seen], axis=0)
     seen, left = [k for k, own in zip(seen, kept, strict=True) if own], left[:, kept] / length[kept]
     cosine = left.T @ left
     said = []
@@ -45,8 +46,8 @@ def acting_alike(found: Calibration) -> list[str]:
         least = min(float(cosine[i, j]) for j in like)
         said.append(
             f"{parameters[k].name} does here what {listed(rigid)} would (cosine {least:.3f} beside "
-            "all else), and what it was given may be theirs: its value, and how stiff they are at "
-            "least, hold for all of them together only. Move the joints between them, or fix all "
-            "but one (free: false)."
+            "all else): these readings tell the sum of their compliances, and which of them has it "
+            "is next to chance, whatever the intervals say. Move the joints between them, or fix "
+            "all but one (free: false)."
         )
     return said

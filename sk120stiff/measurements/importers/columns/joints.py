@@ -45,7 +45,7 @@ class JointColumns:
         terms = [parse_linear(text, "--joints").terms for text in self.mapping.values()]
         words = list(dict.fromkeys(name for own in terms for name in own if name))
         shares = [[own.get(word, 0.0) for word in words] for own in terms]
-        return words, np.array(shares), np.array([own.get("", 0.0) for own in terms])
+        return names, np.array(shares), np.array([own.get("", 0.0) for own in terms])
 
 
 def joint_columns(

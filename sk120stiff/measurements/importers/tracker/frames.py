@@ -70,7 +70,7 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         placing = place(robot, rough)
     except InputError as error:
         if isinstance(error, OtherConvention):
-            raise _by_other_columns(error, draft) from error
+            raise _by_other_columns(error, draft, robot) from error
         raise Refusal(
             f"{error.what}. These are not this robot's positions as they stand",
             where=error.where,
@@ -167,12 +167,12 @@ def stood_of(draft: Draft) -> Index:
     return np.array([names.index(label) for label in labels], dtype=np.intp)
 
 
-def _by_other_columns(error: OtherConvention, draft: Draft) -> Refusal:
+def _by_other_columns(error: OtherConvention, draft: Draft, robot: Robot) -> Refusal:
     """The same refusal by the names of the file's own columns."""
-    columns, shares, zeros = draft.joints.sums
+    (columns, shares, zeros), slides = draft.joints.sums, robot.prismatic
 
     def told(way: Convention) -> str:
-        return f"--joints '{','.join(way.of(shares, zeros).expressions(columns))}'"
+        return f"--joints '{','.join(way.of(shares, zeros).expressions(columns, slides))}'"
 
     stands = error.standing
     return Refusal(
