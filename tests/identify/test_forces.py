@@ -80,7 +80,8 @@ def test_poses_with_few_loads_tell_nothing() -> None:
     """With loads all around, five leave no room for a constant and a curve: lost motion has it."""
     assert growing(base_fit(pulled(loads=5))) is None
     assert (
-        growing(base_fit(hidden(LostMotion("joint_2_l", {"half_gap": 5e-5}), sigma=SIGMA))) is None
+        growing(base_fit(hidden(LostMotion("joint_2_l", {"half_width": 5e-5}), sigma=SIGMA)))
+        is None
     )
 
 

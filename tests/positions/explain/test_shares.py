@@ -37,6 +37,9 @@ def test_what_a_name_takes_off_is_told_with_what_it_has_it_from(
     share = f"takes off {100 * item.gain.share:.1f} %"
     assert answer.taken_off(item) == share
     assert answer.taken_off(item, " of it") == f"{share} of it"
+    nothing, worse = (replace(item, gain=replace(item.gain, share=s)) for s in (1e-4, -0.05))
+    assert answer.taken_off(nothing) == "takes nothing off beside the others"
+    assert answer.taken_off(worse, " of it") == "beside the others adds 5.0 % of it"
     own = [p.effect == item.effect for p in answer.final.parameters]
     rigid = replace(answer, final=replace(answer.final, at_bound=np.array(own)))
     assert (
