@@ -51,12 +51,16 @@ def best_selection(
     """
     plain = candidates(measurements)
     open_ = [growing(held_against(noise, first), least=SUSPECTED) or noise for noise in plain]
+    ends = []
     for _ in range(ROUNDS):
         found, noise = _likeliest(open_, under)
-        again = [growing(held_against(noise, found.final)) or noise for noise in plain]
+        ends.append((found, noise))
+        again = [growing(held_against(each, found.final)) or each for each in plain]
         if all(map(_alike, again, open_)):
             break
         open_ = again
+    else:  # one leads to another and that one back: the likeliest
+        found, noise = min(ends, key=lambda end: end[0].total)
     if yardstick(found.base).source == "computed":
         found = under(replace(noise, sigma=FINEST, freedom=np.inf))
     return found, noise
