@@ -29,6 +29,11 @@ class Counting(Effect):
     def goes_with(self) -> str:
         """What it counts: ``temperature``, ``time`` or ``order``."""
 
+    @property
+    def over_time(self) -> bool:
+        """Goes from reading to reading, as what moved in between does, whatever the arm does."""
+        return self.goes_with != "temperature"
+
     def referred(self, references: Iterable[Reference]) -> Self:
         """The effect as it is fitted to readings that have these references; see `beside`."""
         own = next((known for known in references if known.of == self.goes_with), None)

@@ -25,7 +25,7 @@ from sk120stiff.identify.positions.words import known_calibration
 from sk120stiff.identify.solve.solvers import Method
 from sk120stiff.identify.uncertainty.known_model import known_of_displacements
 from sk120stiff.identify.uncertainty.left_over import LeftOver
-from sk120stiff.measurements import Measurements, NoiseModel, as_displacements
+from sk120stiff.measurements import Measurements, NoiseModel, as_displacements, taken_as_moved
 from sk120stiff.model import Model
 
 
@@ -80,20 +80,10 @@ def fit(
             measurements, noise=noise is not None, method=method != "trf", robust=robust
         )
         readings = measurements.with_joints(model.robot.actuated, model.robot.kinds)
-        placed = _rigid(model, readings)
-        refuse_other_forces(placed, readings)
-        told = refuse_another_gravity(placed, readings)
-        calibrated = calibrate(model, readings, freedom=fix, waves=waves)
-        blocks = Blocks.of(calibrated, model.catalogue)
-        every = blocks.beside_all(calibrated.unit)  # as `explain` does
-        pushed = refuse_pushed(calibrated, readings, *every)
-        loads = blocks.beside_loads(calibrated.unit)
-        pushed = pushed or refuse_pushed(calibrated, readings, *loads)
-        pushed = pushed or refuse_remounted(calibrated, readings, *loads)
-        lacking = beside_lacking(with_model_form(calibrated), model.catalogue)
-        found = beside_parts(lacking, model.catalogue)
-        by_row = pushed or creeping(found, readings)
-        return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
+        found, moved = taken_as_moved(
+            readings, lambda taken: _fit_positions(model, taken, fix, waves=waves)
+        )
+        return replace(found, notes=(*moved, *found.notes))
     if not waves:
         raise InputError(
             "only positions show waves of a gear, and these readings are displacements",
@@ -104,6 +94,30 @@ def fit(
     parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
     start = replace(model, parameters=tuple(parameters)) if kept else model
     return fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
+
+
+def _fit_positions(
+    model: Model, readings: Measurements, fix: Sequence[str], *, waves: bool
+) -> Calibration:
+    """Positions, or what loads move of several points.
+
+    Raises:
+        Moved: Something moved among them.
+    """
+    placed = _rigid(model, readings)
+    refuse_other_forces(placed, readings)
+    told = refuse_another_gravity(placed, readings)
+    calibrated = calibrate(model, readings, freedom=fix, waves=waves)
+    blocks = Blocks.of(calibrated, model.catalogue)
+    every = blocks.beside_all(calibrated.unit)  # as `explain` does
+    pushed = refuse_pushed(calibrated, readings, *every)
+    loads = blocks.beside_loads(calibrated.unit)
+    pushed = pushed or refuse_pushed(calibrated, readings, *loads)
+    pushed = pushed or refuse_remounted(calibrated, readings, *loads)
+    lacking = beside_lacking(with_model_form(calibrated), model.catalogue)
+    found = beside_parts(lacking, model.catalogue)
+    by_row = pushed or creeping(found, readings)
+    return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
 
 
 def gauges_as_displacements(model: Model, measurements: Measurements) -> Measurements:

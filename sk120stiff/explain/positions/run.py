@@ -74,7 +74,7 @@ from sk120stiff.identify.positions.residuals.remainder import (
     left_beyond_noise,
 )
 from sk120stiff.identify.positions.uncertainty.compliant_parts import beside_parts
-from sk120stiff.measurements import Measurements
+from sk120stiff.measurements import Measurements, taken_as_moved
 from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
@@ -96,7 +96,7 @@ def explain_positions(
 
     Effects of the model are taken for granted; what else yields or is off is looked for.
     """
-    options, usual, catalogue = options or Options(), Options(), model.catalogue
+    options, usual = options or Options(), Options()
     refuse_for_positions(
         readings,
         assume=options.assume,
@@ -105,7 +105,7 @@ def explain_positions(
         prior=options.prior,
     )
     refuse_plan(readings)
-    every = all_effects(model.robot, absolute=True, catalogue=catalogue)
+    every = all_effects(model.robot, absolute=True, catalogue=model.catalogue)
     refuse_unknown(every, options, model)
     if holdout is not None and (holdout.absolute is None or holdout.is_plan):
         raise InputError(
@@ -113,8 +113,29 @@ def explain_positions(
         )
     joints = model.robot.actuated, model.robot.kinds
     readings = readings.with_joints(*joints)
-    tell = progress or (lambda _phrase, _share: None)
+    holdout = None if holdout is None else holdout.with_joints(*joints)
     _refuse_few_poses(readings)
+
+    def work(taken: Measurements) -> Explained:
+        return _explained(model, taken, holdout, options, progress or (lambda _what, _share: None))
+
+    found, moved = taken_as_moved(readings, work)
+    return replace(found, final=replace(found.final, notes=(*moved, *found.final.notes)))
+
+
+def _explained(
+    model: Model,
+    readings: Measurements,
+    holdout: Measurements | None,
+    options: Options,
+    tell: Callable[[str, float], None],
+) -> Explained:
+    """See `explain_positions`.
+
+    Raises:
+        Moved: Something moved among the readings.
+    """
+    catalogue = model.catalogue
     tell("registering the tracker", 0.05)
     base = calibrate(
         model, readings, geometry=False, waves=False, shared=False, catalogue=catalogue
@@ -216,7 +237,7 @@ def explain_positions(
         probabilities=shared(probabilities(linear, found), named, final),
         following=following,
         readings=readings,
-        heldout=None if holdout is None else heldout_on(final, base, holdout.with_joints(*joints)),
+        heldout=None if holdout is None else heldout_on(final, base, holdout),
     )
 
 

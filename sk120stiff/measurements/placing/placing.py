@@ -11,6 +11,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.data import Measurements
+from sk120stiff.measurements.moved import Moved, labelled
 from sk120stiff.measurements.placing.cloud import FEWEST, Cloud
 from sk120stiff.measurements.placing.distances import place_distances
 from sk120stiff.measurements.placing.registration import Registration
@@ -318,11 +319,15 @@ def _refuse_moved(
         moved = moved_at(cloud)
     if moved is not None and moved[0] < least:
         rms, row = moved
-        raise InputError(
+        raise Moved(
             f"{told}. The tracker looks moved between lines {line[row - 1]} and {line[row]}: with "
             f"another frame from there on {1e3 * rms:.3g} mm are left",
             where=where,
             remedy="Add a column station with one label up to there and another from there on.",
+            apart=labelled(
+                readings, "station", (np.arange(readings.n_readings) >= rows[row]).astype(np.intp)
+            ),
+            taken="Taken so here: a frame of its own for each part of the campaign.",
         )
     for by in SHIFTS:
         shifted = shifted_at(cloud, by)

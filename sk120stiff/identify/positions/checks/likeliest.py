@@ -22,6 +22,7 @@ from sk120stiff.identify.positions.checks.change_points import (
     Change,
     Steps,
 )
+from sk120stiff.measurements.moved import Column
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Cause:
     """
 
     what: str
-    column: str
+    column: Column
     own: str
     joint: int | None = None
 

@@ -10,11 +10,13 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.geometry import ToolOffset
-from sk120stiff.errors import InputError, listed, two_digits
+from sk120stiff.errors import listed, two_digits
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.change_points import Steps
 from sk120stiff.identify.positions.residuals.pure_error import cells_of_numbers
-from sk120stiff.measurements import Measurements
+from sk120stiff.identify.positions.solve.pose_problem import absolute_of
+from sk120stiff.measurements import Measurements, Moved
+from sk120stiff.measurements.moved import labelled
 
 
 def refuse_remounted(
@@ -32,7 +34,7 @@ def refuse_remounted(
             variances (P,) of their factors.
 
     Raises:
-        InputError: Another place takes off half the square of what all else leaves.
+        Moved: Another place takes off half the square of what all else leaves.
     """
     problem = found.problem
     said, measured = problem.said, problem.measurements
@@ -63,5 +65,9 @@ def refuse_remounted(
         "Or one label for all, if nothing was moved."
     )
     if change.sure:
-        raise InputError(looks, where=readings.place, remedy=remedy)
+        part = np.searchsorted(masses[list(change.cuts)], absolute_of(readings).payload, "right")
+        raise Moved(
+            looks, where=readings.place, remedy=remedy, apart=labelled(readings, "series", part),
+            taken="Taken so here: a place of its own under each.",
+        )  # fmt: skip
     return (f"T{looks[1:]}. {remedy}",)

@@ -16,8 +16,8 @@ import numpy as np
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
-from sk120stiff.errors import InputError
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.change_points import CLEARER, Change, Steps
 from sk120stiff.identify.positions.checks.likeliest import (
     Cause,
@@ -26,11 +26,12 @@ from sk120stiff.identify.positions.checks.likeliest import (
     rivals_of,
     variants,
 )
-from sk120stiff.identify.positions.checks.slips_in_words import looks_of, remedy_of
+from sk120stiff.identify.positions.checks.slips_in_words import looks_of, remedy_of, taken_of
 from sk120stiff.identify.positions.residuals.pure_error import cells_of_numbers
 from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
-from sk120stiff.measurements import Measurements
+from sk120stiff.measurements import Measurements, Moved
+from sk120stiff.measurements.moved import labelled, turned_from
 
 PUSHED = Cause("the tracker", "station", "a frame of its own")
 SLIPPED = Cause("the marker", "series", "a place of its own on the tool")
@@ -38,20 +39,20 @@ ROUNDING = 1e-7  # m or rad; what no instrument reads, and no jump is told of
 
 
 def refuse_pushed(
-    found: Fit, readings: Measurements, others: Array, prior: Array
+    found: Calibration, readings: Measurements, others: Array, prior: Array
 ) -> tuple[str, ...]:
     """Stop where tracker, marker or a joint moved between rows, and the file tells nothing of it.
 
     Where an error of the model might still be mistaken for it, a sentence says what it looks like.
 
     Args:
-        found: A fit whose tracker has a frame.
+        found: A calibration whose tracker has a frame.
         readings: Where they come from.
         others: (M, P) whitened columns of all that may be at work.
         prior: (P,) inverse variances of their factors, in units of what is left.
 
     Raises:
-        InputError: One did, between lines that the message tells.
+        Moved: One did, between lines that the message tells.
     """
     problem = found.problem
     if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
@@ -75,9 +76,31 @@ def refuse_pushed(
     when = _when(problem.measurements)
     looks = looks_of(problem, when, best, rivals)
     remedy = remedy_of(problem, when, best, rivals, [*unsaid])
-    if any(each.change.sure for each in (best, *rivals) if each.cause in unsaid):
-        raise InputError(looks, where=readings.place, remedy=remedy)
+    moved = [each for each in (best, *rivals) if each.change.sure and each.cause in unsaid]
+    if moved:
+        least = min(moved, key=lambda each: each.left)
+        raise Moved(
+            looks, where=readings.place, remedy=remedy, taken=taken_of(problem, when, least, best),
+            apart=_apart(readings, np.flatnonzero(readings.use & ~found.wild), least),
+        )  # fmt: skip
     return (f"{looks[0].upper()}{looks[1:]}. {remedy}",)
+
+
+def _apart(readings: Measurements, rows: Index, moved: Suspect) -> Measurements:
+    """The readings with that told: labels of the parts, or values of the joint put right.
+
+    Args:
+        readings: All that were given.
+        rows: Those of them that took part.
+        moved: What moved among these.
+    """
+    clock = _clock(readings)
+    first = np.sort(clock[rows])[list(moved.change.cuts)]  # of every part but the first
+    part = np.searchsorted(first, clock, side="right")
+    if moved.cause.joint is None:
+        return labelled(readings, moved.cause.column, part)
+    by = np.concatenate([[0.0], np.cumsum(moved.sizes[:, 0])])
+    return turned_from(readings, moved.cause.joint, by[part])
 
 
 def weighings(problem: PoseProblem) -> Iterator[PoseWhitening]:
@@ -154,6 +177,11 @@ def _of_joints(
 
 def _when(readings: Measurements) -> Index:
     """(N,) place of each row in the order in which they were read, which is that of the file."""
+    clock = np.argsort(_clock(readings), kind="stable")
+    return np.asarray(np.argsort(clock, kind="stable"), dtype=np.intp)
+
+
+def _clock(readings: Measurements) -> Array:
+    """(N,) when each row was read, be it by its place in the file."""
     clock = readings.order if readings.order is not None else readings.time
-    rows = np.arange(readings.n_readings) if clock is None else clock
-    return np.asarray(np.argsort(np.argsort(rows, kind="stable"), kind="stable"), dtype=np.intp)
+    return np.arange(float(readings.n_readings)) if clock is None else clock

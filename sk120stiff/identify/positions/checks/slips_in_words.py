@@ -66,6 +66,23 @@ def remedy_of(
     )
 
 
+def taken_of(problem: PoseProblem, when: Index, taken: Suspect, best: Suspect) -> str:
+    """How the readings are taken from here on.
+
+    Args:
+        problem, when: They.
+        taken: What moved as they are taken.
+        best: What moved most likely.
+    """
+    if taken.cause.joint is not None:
+        by = _added(problem, when, taken)
+        return f"Taken so here: to values of {taken.cause.what} is added {by}."
+    own = f"{taken.cause.own} for each part of the campaign"
+    if taken.cause == best.cause:
+        return f"Taken so here: {own}."
+    return f"Taken here as if {taken.cause.what} had moved, which leaves least: {own}."
+
+
 def _beside(problem: PoseProblem, when: Index, best: Suspect, rivals: Sequence[Suspect]) -> str:
     """How much the rivals leave, and with how many numbers."""
     said = []

@@ -1,0 +1,89 @@
+"""What moved in the middle of a campaign, and the same readings with that told.
+
+Whoever wrote the file may not know of it. So whatever is found once it is certain is taken as it
+is likeliest, and the work goes on: the result says so, and how the file says otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Literal, TypeVar
+
+import numpy as np
+
+from sk120stiff.arrays import Array, Index
+from sk120stiff.errors import InputError
+from sk120stiff.measurements.data import Measurements
+
+Result = TypeVar("Result")
+
+MOST = 3  # different things that moved in one campaign: more are no campaign
+
+Column = Literal["station", "series"]
+
+
+class Moved(InputError):
+    """Tracker, marker or a joint moved between rows, and the file tells nothing of it.
+
+    Attributes:
+        apart: The same readings with it told.
+        taken: How it is told there, in a sentence.
+    """
+
+    def __init__(
+        self, what: str, *, where: str | None, remedy: str, apart: Measurements, taken: str
+    ) -> None:
+        super().__init__(what, where=where, remedy=remedy)
+        self.apart = apart
+        self.taken = taken
+
+    @property
+    def sentences(self) -> str:
+        """What was found, how it is taken, and how the file says otherwise."""
+        return f"{self.what[0].upper()}{self.what[1:]}. {self.taken} {self.remedy}"
+
+
+def labelled(readings: Measurements, column: Column, part: Sequence[int] | Index) -> Measurements:
+    """The same absolute readings with a label for each (N,) part of the campaign: a, b, ..."""
+    labels, said = tuple(chr(ord("a") + int(k)) for k in part), readings.absolute
+    if said is None:
+        return readings
+    told = replace(said, stations=labels) if column == "station" else replace(said, series=labels)
+    return replace(readings, absolute=told)
+
+
+def turned_from(readings: Measurements, joint: int, by: Array) -> Measurements:
+    """The same readings with (N,) `by` [rad or m] added to the values of a joint.
+
+    Rows of a pose that differ by then are poses of their own.
+    """
+    more = np.zeros_like(readings.joints)
+    more[:, joint] = by
+    first = dict(zip(reversed(readings.pose), by[::-1], strict=True))
+    pose = tuple(
+        label if off == first[label] else f"{label} {off:+.3g}"
+        for label, off in zip(readings.pose, by, strict=True)
+    )
+    return replace(readings, joints=readings.joints + more, pose=pose)
+
+
+def taken_as_moved(
+    readings: Measurements, work: Callable[[Measurements], Result]
+) -> tuple[Result, tuple[str, ...]]:
+    """What comes of readings, taken as they are likeliest where something moved among them.
+
+    Args:
+        readings: As they were read.
+        work: What is done with them; it raises `Moved`.
+
+    Returns:
+        Its result, and sentences of what moved.
+    """
+    told: tuple[str, ...] = ()
+    for _ in range(MOST):
+        try:
+            return work(readings), told
+        except Moved as moved:
+            readings, told = moved.apart, (*told, moved.sentences)
+    return work(readings), told
