@@ -190,6 +190,37 @@ def test_held_out_readings_from_elsewhere_are_placed_anew(
     poses_of(model.robot, readings, {"fitted": model})  # a scene of it can be drawn
 
 
+@pytest.mark.parametrize("behind", [0, 14, 30])
+def test_rows_without_a_station_are_of_those_that_the_model_knows_one_after_the_other(
+    two: Calibration, behind: int, tmp_path: Path
+) -> None:
+    where = (np.arange(30) >= behind).astype(int)
+    readings = sk.read(read(tmp_path, 30, 83, where, label=False)).with_joints(NAMES)
+    found = placed_anew(two.model, readings)
+    assert found is not None and found.model is two.model and found.readings.absolute is not None
+    assert found.readings.absolute.stations == tuple("north" if k == 0 else "south" for k in where)
+    off = sk.predict(found.model, found.readings).gap(found.readings)
+    assert np.sqrt(np.mean(off**2)) < 1.5 * SIGMA
+    lines = {0: "lines 2 to 31 from south", 14: "lines 2 to 15 from north and lines 16 to 31 from "
+             "south", 30: "lines 2 to 31 from north"}  # fmt: skip
+    assert f"the model knows several: {lines[behind]} are taken" in found.sentence()
+    poses_of(two.model.robot, readings, {"fitted": two.model})  # a scene of it can be drawn
+
+
+def test_rows_without_a_station_from_another_place_are_placed_anew(
+    two: Calibration, tmp_path: Path
+) -> None:
+    path = read(tmp_path, 40, 77, np.ones(40, dtype=int), label=False)
+    x = sk.read(path).with_joints(NAMES)
+    assert x.absolute is not None and x.absolute.channels.position is not None
+    away = replace(x.absolute.channels, position=x.absolute.channels.position + [1.0, 0.0, 0.5])
+    x = replace(x, absolute=replace(x.absolute, channels=away))
+    found = placed_anew(two.model, x)
+    assert found is not None and "stands elsewhere" in found.sentence()
+    off = sk.predict(found.model, found.readings).gap(found.readings)
+    assert np.sqrt(np.mean(off**2)) < 1.5 * SIGMA
+
+
 def _own(folder: Path, label: bool) -> sk.Measurements:
     own = read(folder, 60, 3, half(60) if label else np.zeros(60, dtype=int), label=label)
     return sk.read(own).with_joints(NAMES)

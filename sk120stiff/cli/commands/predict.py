@@ -98,7 +98,7 @@ def _positions(model: Model, readings: Measurements, out: Path | None) -> Answer
         for said in look(model, readings).sentences:
             warn(said)
     moved = placed_anew(model, readings)
-    model = model if moved is None else moved.model
+    model, readings = (model, readings) if moved is None else (moved.model, moved.readings)
     predicted = predict(model, readings)
     columns = prediction_table(readings, predicted)
     if out is not None:

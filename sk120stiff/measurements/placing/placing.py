@@ -11,18 +11,17 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.moved import Moved, labelled
 from sk120stiff.measurements.placing.cloud import FEWEST, Cloud
 from sk120stiff.measurements.placing.distances import place_distances
+from sk120stiff.measurements.placing.from_a_row_on import refuse_from_a_row_on
+from sk120stiff.measurements.placing.groups import of_all_groups
 from sk120stiff.measurements.placing.registration import Registration
 from sk120stiff.measurements.placing.slips import (
     ONE_COLUMN,
     Convention,
     markers,
-    moved_at,
     nearer,
     one_zero,
-    shifted_at,
     signs_and_turns,
     slips,
     to_the_floor,
@@ -40,7 +39,6 @@ BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 FEWER = 50  # rows that sums of joints are looked for in: there are many
 TURNED, SHIFTED = np.radians(3.0), 0.05  # against base axes, and of the spread
 MOVED = 3.0  # times less left with the marker elsewhere: its stated place is wrong
-SHIFTS = (1, -1, 2, -2)  # rows by which positions may be off their joints
 COMPUTED = 2e-6  # m; no arm is built, and no tracker reads, as well as that
 
 
@@ -96,7 +94,8 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     stands_for_all(stations, stood[whole], readings)
     free = said.fit_point
     names = np.array(said.markers)[whole]
-    labels = list(dict.fromkeys(said.groups or ()))
+    groups = [] if said.groups is None else [said.groups[k] for k in whole]
+    labels = list(dict.fromkeys(groups))
     one = np.zeros(len(whole), dtype=np.intp)
     cloud = Cloud(
         robot, readings.joints[whole], x[whole], said.point[whole], names, one, stood[whole]
@@ -106,8 +105,7 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     if free and len(labels) > 1 and found.rms > SUSPECT * spread:
         # No one shift of all markers will do: exchanged, or each somewhere of its own.
         _refuse_exchange(cloud, found, readings)
-        own = np.array([labels.index(said.groups[k]) for k in whole]) if said.groups else one
-        cloud = replace(cloud, group=own)
+        cloud = replace(cloud, group=np.array([labels.index(label) for label in groups]))
         found, kept = cloud.placed(fit_marker=True)
     notes, far_off = list[str](), False
     if found.rms > SUSPECT * spread:
@@ -154,11 +152,12 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
             f"The position is exactly 0, 0, 0 in line{'s' * (len(lost) > 1)} {lines}, as where a "
             "tracker saw nothing: set aside. Leave such cells blank."
         )
+    marker, apart = of_all_groups(found.marker, found.apart, labels, said)
     return Placing(
         shift=found.shifts,
         turn=rotation_vector(found.turns),
-        marker=found.marker if free else np.zeros(3),
-        apart=found.apart,
+        marker=marker if free else np.zeros(3),
+        apart=apart,
         rms=found.rms,
         wild=wild,
         distance=distance,
@@ -251,7 +250,7 @@ def _refuse_slips(
     )
     if explains < least:
         raise one
-    _refuse_moved(cloud, told, least, readings, rows)
+    refuse_from_a_row_on(cloud, told, least, readings, rows)
     ways = [
         (signs_and_turns, "other zeros or signs of joints"),
         (to_the_floor, "other zeros, signs or sums of joints"),
@@ -307,42 +306,6 @@ def _say_if_it_hangs(cloud: Cloud, readings: Measurements) -> list[str]:
         "the arm hangs from no ceiling, the joint columns have that other convention. If z points "
         "down, nothing is to be done; if the arm hangs, state gravity in the YAML file."
     ]
-
-
-def _refuse_moved(
-    cloud: Cloud, told: str, least: float, readings: Measurements, rows: Index
-) -> None:
-    """Refuse positions of a tracker that moved once, or that stand in other rows from one on."""
-    where, line = readings.place, readings.line[rows]
-    moved = None
-    if readings.absolute is not None and readings.absolute.frame == "unknown":
-        moved = moved_at(cloud)
-    if moved is not None and moved[0] < least:
-        rms, row = moved
-        raise Moved(
-            f"{told}. The tracker looks moved between lines {line[row - 1]} and {line[row]}: with "
-            f"another frame from there on {1e3 * rms:.3g} mm are left",
-            where=where,
-            remedy="Add a column station with one label up to there and another from there on.",
-            apart=labelled(
-                readings, "station", (np.arange(readings.n_readings) >= rows[row]).astype(np.intp)
-            ),
-            taken="Taken so here: a frame of its own for each part of the campaign.",
-        )
-    for by in SHIFTS:
-        shifted = shifted_at(cloud, by)
-        if shifted is None or shifted[0] >= least:
-            continue
-        rms, row = shifted
-        last = len(line) - 1
-        raise InputError(
-            f"{told}. From line {line[row]} on positions and joints look {abs(by)} row"
-            f"{'s' * (abs(by) > 1)} apart: with the position of line {line[max(row, -by)]} at the "
-            f"joints of line {line[min(max(row, -by) + by, last)]}, and so on, {1e3 * rms:.3g} mm "
-            "are left",
-            where=where,
-            remedy="Put the rows right: one of them lacks its partner.",
-        )
 
 
 def _refuse_exchange(cloud: Cloud, found: Registration, readings: Measurements) -> None:

@@ -190,6 +190,7 @@ def _off_the_last(
 
     Nothing where a model does not know where the instrument stands, or no position was read.
     """
+    from sk120stiff.effects import load_cases_of
     from sk120stiff.identify.positions.checks.reregistration import placed_anew
     from sk120stiff.model import instrument_frames, predict
 
@@ -199,7 +200,9 @@ def _off_the_last(
     at: dict[str, Array] = {}
     for name, model in models.items():
         moved = placed_anew(model, used)
-        model = model if moved is None else moved.model
+        if moved is not None:
+            model, used = moved.model, moved.readings
+            load_cases = load_cases_of(model.robot, used)
         try:
             said = predict(model, used).position
         except InputError:

@@ -11,6 +11,7 @@ import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.placing.placing import place
 from tests.positions.arm import NAMES, Array, errors, poses, tracked, write
+from tests.positions.checks.test_slips import explain, fit, told
 from tests.positions.test_stations import AWAY, ELSEWHERE, FIT, NOISE, SIGMA, half, read
 
 COUNT = 40
@@ -77,3 +78,12 @@ def test_a_column_of_something_else_is_no_joint_in_degrees(tmp_path: Path) -> No
     a[:, 1] = np.random.default_rng(1).uniform(-6.0, 6.0, COUNT)
     error = refused(tmp_path, a, x)
     assert "degrees" not in error.what
+
+
+@pytest.mark.parametrize("verb", [fit, explain])
+def test_and_both_verbs_go_on_with_a_frame_for_each_part(verb, tmp_path: Path) -> None:
+    there = ELSEWHERE.apply(errors(4).stands(A)[0]) + AWAY
+    moved = np.where((np.arange(COUNT) >= 17)[:, None], there, X)
+    found = verb(write(tmp_path, A, moved, FIT + NOISE))
+    assert "The tracker looks moved between lines 18 and 19" in told(found)
+    assert getattr(found, "final", found).rms < 1.3 * SIGMA

@@ -224,7 +224,8 @@ def heldout_on(final: Calibration, base: Calibration, others: Measurements) -> H
     """
     warn_of_references(final.model, others)
     moved = placed_anew(final.model, others)
-    final = final if moved is None else replace(final, model=moved.model)
+    if moved is not None:
+        final, others = replace(final, model=moved.model), moved.readings
     wild = wild_beside(final, others, np.zeros(others.n_readings, dtype=bool))
     kept = ~wild[others.use]
     problem, gap = _gap_of(final, others)
@@ -234,7 +235,7 @@ def heldout_on(final: Calibration, base: Calibration, others: Measurements) -> H
     length = length[np.isfinite(length)]
     rigid = placed_anew(base.model, others)
     base = base if rigid is None else replace(base, model=rigid.model)
-    alone = _gap_of(base, others)[1]
+    alone = _gap_of(base, others if rigid is None else rigid.readings)[1]
     poses = [problem.measurements.pose[row] for row in problem.rows[inside]]
     return HeldOutFile(
         rms=rms(gap[inside]),

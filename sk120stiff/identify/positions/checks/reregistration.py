@@ -12,6 +12,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
+from sk120stiff.identify.positions.checks.parts import by_stations
 from sk120stiff.identify.positions.solve.start import REGISTERED, options_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing.placing import stands_for_all
@@ -34,18 +35,24 @@ class PlacedAnew:
 
     Attributes:
         model: The model with other frames, and the marker elsewhere where that is needed.
+        readings: They, with the stations told that the model knows.
         marker: Has the marker moved as well?
         before, after: Median distance of positions without and with it [m]; `before` is NaN where
             the model knows nothing of a station.
+        parts: Which rows were taken for which station of the model; "": none had to be.
     """
 
     model: Model
+    readings: Measurements
     marker: bool
     before: float
     after: float
+    parts: str = ""
 
     def sentence(self) -> str:
         """What was done, and why."""
+        if self.parts:
+            return self.parts
         what = "The tracker" + (" and the marker" if self.marker else "")
         told = (
             f": {1e3 * self.before:.4g} mm are left (median) where the fit had "
@@ -64,7 +71,8 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
     """The model with frames of its own for these readings; None where it knows the tracker's.
 
     A frame that the model knows stays unless another leaves less than `BETTER` of the gap.
-    With a station that it does not know all stations of these readings are placed anew.
+    With a station that it does not know all stations of these readings are placed anew. Where the
+    file names none and the model knows several, each row is told the one that it fits.
 
     Raises:
         InputError: Too few positions were read from a station that the model does not know.
@@ -76,8 +84,10 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
     model, view = model.under(readings.gravity), views[0]
     whole = np.isfinite(said.channels.position).all(axis=1) & readings.use
     labels, stood = said.stood
-    known = {p.spec.name.rpartition(".")[0] for p in model.parameters if p.effect is view}
-    strange = not set(labels) <= known
+    known = dict.fromkeys(
+        p.spec.name.rpartition(".")[0] for p in model.parameters if p.effect is view
+    )
+    strange = not set(labels) <= set(known)
     if strange:
         stands_for_all(labels, stood[whole], readings)
     fewest = np.bincount(stood[whole], minlength=len(labels)).min()
@@ -90,6 +100,10 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
         before = float(np.median(np.linalg.norm(x - read_poses(model, rows).position, axis=1)))
     bare, best = model.without(view.id), None
     goal = np.inf if strange else BETTER * before
+    parts = by_stations(model, readings, list(known), rows, whole) if strange else None
+    if parts is not None:
+        goal, told = BETTER * parts.left, parts.readings
+        best = PlacedAnew(model, told, False, parts.left, parts.left, parts.sentence)
     for marker in (False, True)[: 1 + (fewest >= OF_MARKER)]:
         found = _trimmed(bare, rows, x, stood[whole], fit_marker=marker)
         moved = None if found is None else _moved(model, view, found, readings)
@@ -98,7 +112,7 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
         moved, after = _refined(moved, view.id, rows, x, marker=marker)
         if after < goal:
             goal = BETTER * after
-            best = PlacedAnew(_with_doubt(moved, model), marker, before, after)
+            best = PlacedAnew(_with_doubt(moved, model), readings, marker, before, after)
     return best
 
 
