@@ -34,6 +34,7 @@ from sk120stiff.explain.positions.judge.accounts import (
     suspects_of,
 )
 from sk120stiff.explain.positions.judge.changed import changed
+from sk120stiff.explain.positions.judge.fallen import with_one_less, with_own_values
 from sk120stiff.explain.positions.judge.laws import (
     Laws,
     beside_laws,
@@ -43,6 +44,7 @@ from sk120stiff.explain.positions.judge.laws import (
 )
 from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
 from sk120stiff.explain.positions.judge.remainder import where_it_lives
+from sk120stiff.explain.positions.judge.smooth_error import beside_any
 from sk120stiff.explain.positions.select.candidates import linear_at
 from sk120stiff.explain.positions.select.choose import (
     Chosen,
@@ -158,17 +160,22 @@ def _explained(
         if _less_likely(again, final, linear):
             break
         seen, (linear, found, laws, hidden), final = final, about, again
-    if (apart := _with_own_values(linear, found, final)) != found:
+    if (apart := with_own_values(linear, found, final)) != found:
         found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
     if found.order and _left(final) > _left(base):  # first order led astray
         found, laws = nothing_named(linear, found), {}
         final = _exactly(base, seen, linear, found, readings, catalogue)
-    linear = _as_fitted(linear, found, final)
     tell("what is left", 0.85)
-    final, guess, guessed = with_model_form(final), None, np.nan
+    final = with_model_form(final)
+    linear = _beside_errors(_as_fitted(linear, found, final), seen, final)
+    while lost := with_one_less(linear, found, final):
+        found = lost
+        laws = {e: own for e, own in laws.items() if e in found.order}
+        final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
+        linear = _beside_errors(_as_fitted(linear, found, final), seen, final)
+    guess, guessed = None, np.nan
     suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
     if final.form is not None:
-        linear = replace(linear, independent=final.form.independent, smooth=final.form.share)
         likely = [alternatives(linear, found.order, e)[1] for e in found.order]
         if likely and max(likely) < EVEN:
             if (together := of_all(linear, found.order)) < TOGETHER:
@@ -265,15 +272,6 @@ def _about(base: Calibration, readings: Measurements, catalogue: Catalogue) -> C
     return refined(base, [e for e in zeros if e.id not in present], readings, None, catalogue)
 
 
-def _with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen:
-    """Without names of which the exact fit tells nothing: all their values are one with others."""
-    own = {p.effect.id for p in final.model.parameters if p.free}
-    apart = tuple(e for e in found.order if linear.candidates[e].id in own)
-    why = "fits, but all its values are counted in others, which explain as much."
-    gone = {e: f"{linear.candidates[e].id} {why}" for e in found.order if e not in apart}
-    return Chosen(apart, {**found.dropped, **gone}) if gone else found
-
-
 def _refuse_few_poses(readings: Measurements) -> None:
     """Stop where no other pose can confirm a name.
 
@@ -348,6 +346,14 @@ def _as_fitted(linear: Linear, found: Chosen, final: Calibration) -> Linear:
         for e, each in enumerate(linear.candidates)
     )
     return replace(linear, candidates=candidates)
+
+
+def _beside_errors(linear: Linear, seen: Calibration, final: Calibration) -> Linear:
+    """The linear problem as names are judged by it: beside errors like what the fit leaves."""
+    if final.form is None:
+        return replace(linear, independent=None, errors=None)
+    errors = beside_any(linear, seen.problem, final.form)
+    return replace(linear, independent=final.form.independent, errors=errors)
 
 
 def _left(found: Calibration) -> float:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+from scipy.special import expit
 
 from sk120stiff.arrays import Array
 from sk120stiff.explain.positions.select.choose import RIVAL, confirmed, frames_of, gain, usual
@@ -21,7 +24,10 @@ def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:
 
     Of errors of geometry that stand for one another none is likely by itself.
     """
-    return 1.0 / (1.0 + _impostor(linear, chosen, ()))
+    if linear.errors is None:
+        return 1.0
+    odds = linear.errors.score(chosen) - linear.errors.score(())
+    return float(expit(odds))
 
 
 def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
@@ -44,22 +50,21 @@ def _rivals(
     Evidence beyond that of the chosen one, which poses left out bear out, is no evidence where they
     do not: few readings far from all others make as much.
     """
-    noise = linear.noise(chosen)
     rest = linear.less(chosen, e)
-    nothing = linear.score(rest, noise)
-    own = linear.score(chosen, noise)
+    score = _scores(linear, chosen, rest)
+    own, nothing = score(chosen), score(rest)
     frames = set(frames_of(linear))
     alone = e in frames and frames & set(rest)  # no frame is exact where others are off
     others = {
-        c: linear.score((*rest, c), noise)
+        c: score((*rest, c))
         for c in linear.may_join(rest)
         if c not in chosen and (not alone or c in frames)
     }
     rivals = tuple(
         c
-        for c, score in others.items()
-        if score + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
-        and score > nothing
+        for c, there in others.items()
+        if there + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
+        and there > nothing
     )
     most = own + float(np.log(FALLEN))
     for c in rivals:
@@ -70,9 +75,24 @@ def _rivals(
     weight = np.exp(scores - scores.max())
     narrow = float(weight[:-1].sum() / weight.sum())
     sure = _beside_what_every_arm_has(linear, chosen, (e, *rivals), narrow, len(others))
-    doubt = (1.0 - sure) / max(sure, 1e-300) + _impostor(linear, chosen, rest)
+    doubt = (1.0 - sure) / max(sure, 1e-300)
     weight[-1] = doubt * weight[:-1].sum()
     return rivals, prior, weight
+
+
+def _scores(
+    linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]
+) -> Callable[[tuple[int, ...]], float]:
+    """The evidence of sets beside what is left of the chosen, or beside errors that may be there.
+
+    Args:
+        linear: The positions linearised.
+        chosen, rest: A set, and the same without one.
+    """
+    if linear.errors is not None:
+        return linear.errors.likeliest((chosen, rest)).score
+    noise = linear.noise(chosen)
+    return lambda each: linear.score(each, noise)
 
 
 def _beside_what_every_arm_has(
@@ -96,21 +116,11 @@ def _beside_what_every_arm_has(
         return narrow
     wide = (*chosen, *usual_ones)
     without = linear.less(wide, own[0])
-    scores = [linear.score(each, linear.noise(each)) for each in (chosen, wide, without)]
+    sets = chosen, wide, without
+    if linear.errors is None:
+        scores = [linear.score(each, linear.noise(each)) for each in sets]
+    else:
+        scores = [linear.errors.score(each) for each in sets]
     taken = 1.0 / (1.0 + np.exp(np.clip(scores[2] + np.log(others + 1.0) - scores[1], -50, 50)))
     share = 1.0 / (1.0 + np.exp(np.clip(scores[0] - scores[1], -50.0, 50.0)))
     return float((1.0 - share) * narrow + share * min(taken, narrow))
-
-
-def _impostor(linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]) -> float:
-    """Odds that a name is the part of an unknown cause that looks like it.
-
-    An unknown cause is at work where what is left is smooth. It is as likely to be like the name
-    as not: of the squares of such causes any share may be alike (the squared cosine between the
-    two, evenly spread), and the rest is left.
-    """
-    if not linear.smooth:
-        return 0.0
-    after, before = (linear.left_out(each, linear.noise(each)) for each in (chosen, rest))
-    left = linear.smooth * after
-    return left / (left + max(before - after, 0.0))

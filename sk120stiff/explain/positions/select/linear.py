@@ -7,9 +7,11 @@ works on sums over the readings of a part, so cross-validation costs no more tha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
@@ -20,6 +22,16 @@ from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 
 WIDENED = 6  # rounds in which a prior and the size under it come to agree
 AGREED = 0.01  # share of the size by which they may differ still
+
+
+class BesideErrors(Protocol):
+    """Sets of names, judged beside what errors of the model may be (`smooth_error.py`)."""
+
+    def score(self, chosen: tuple[int, ...], /) -> float:
+        """Logarithm of the evidence, up to a constant of all models."""
+
+    def likeliest(self, sets: Sequence[tuple[int, ...]], /) -> BesideErrors:
+        """Beside those errors alone that are likeliest for these sets."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +52,7 @@ class Linear:
         fold: (M,) part that it is left out with.
         stated: The size of the noise was stated.
         independent: How many independent numbers what is left amounts to; None: all of them.
-        smooth: Share of the variance left that is an error of the model, smooth over the joints.
+        errors: Evidence beside errors of the model that nobody knows; None: what is left is noise.
     """
 
     residual: Array
@@ -55,7 +67,7 @@ class Linear:
     stated: bool
     seen: tuple[int, ...] = ()
     independent: float | None = None
-    smooth: float = 0.0
+    errors: BesideErrors | None = None
 
     @cached_property
     def sums(self) -> Array:

@@ -46,6 +46,7 @@ class ModelForm:
         sizes: (n + 1,) variance of the error of each actuated joint per `UNIT`², and of that which
             each pose has of its own [whitened].
         by_joint: (n,) share of each joint in the smooth error.
+        noise: Variance of the noise beside it [whitened].
     """
 
     share: float
@@ -54,6 +55,7 @@ class ModelForm:
     chance: float
     sizes: Array
     by_joint: Array
+    noise: float
 
 
 def model_form(found: Fit) -> ModelForm | None:
@@ -63,15 +65,15 @@ def model_form(found: Fit) -> ModelForm | None:
         return None
     if found.misfit is not None and not found.exceeds:
         return None
-    part = _some(problem)
+    part = some_rows(problem)
     rows = np.flatnonzero(np.isin(problem.rows, part))
     blind = _complement(found.jacobian[rows][:, ~found.at_bound])
     y = blind.T @ found.residual[rows]
     if len(y) < FEWEST:
         return None
     here = replace(problem, measurements=problem.measurements.select(part))
-    ways = [blind.T @ block for block in _smooth(here)]
-    cell = _cells(here)
+    ways = [blind.T @ block for block in smooth_ways(here)]
+    cell = cells_of(here)
     same = np.equal.outer(cell, cell)
     products = {k: way @ way.T for k, way in enumerate(ways) if way.any()}
     if len(np.unique(cell)) < len(cell):
@@ -99,6 +101,7 @@ def model_form(found: Fit) -> ModelForm | None:
         chance=chance,
         sizes=sizes,
         by_joint=carried[:-1] / carried.sum(),
+        noise=float(np.exp(2.0 * logs[0])),
     )
 
 
@@ -110,11 +113,11 @@ def widened(found: AnyFit, form: ModelForm | None) -> AnyFit:
     moving = ~found.at_bound
     inverse = np.linalg.pinv(found.jacobian[:, moving], rcond=1e-10)
     moved = np.zeros((len(inverse), len(inverse)))
-    for size, block in zip(form.sizes, _smooth(problem), strict=False):
+    for size, block in zip(form.sizes, smooth_ways(problem), strict=False):
         taken = inverse @ block
         moved += size * taken @ taken.T
     if form.sizes[-1] > 0.0:
-        cell = _cells(problem)
+        cell = cells_of(problem)
         order = np.argsort(cell, kind="stable")
         first = np.flatnonzero(np.diff(cell[order], prepend=-1))
         together = np.add.reduceat(inverse[:, order], first, axis=1)
@@ -127,7 +130,7 @@ def widened(found: AnyFit, form: ModelForm | None) -> AnyFit:
     return leaving_out(found, moved * np.outer(less, less), told)
 
 
-def _some(problem: PoseProblem) -> Index:
+def some_rows(problem: PoseProblem) -> Index:
     """Rows of as many whole poses as sizes are estimated from."""
     pose = problem.load_cases.pose
     order = np.random.default_rng(0).permutation(np.unique(pose))
@@ -143,7 +146,7 @@ def _complement(columns: Array) -> Array:
     return np.asarray(U[:, int((told > 1e-9 * told.max(initial=1e-300)).sum()) :])
 
 
-def _smooth(problem: PoseProblem) -> Iterator[Array]:
+def smooth_ways(problem: PoseProblem) -> Iterator[Array]:
     """(M, r) whitened: what waves and their products in the error of each joint do."""
     basis = UNIT * waves(problem.load_cases.a)[problem.rows]
     for column in problem.by_joints.T:
@@ -162,7 +165,7 @@ def waves(a: Array) -> Array:
     return np.concatenate([np.ones((len(a), 1)), *first, *(SECOND * x for x in more)], axis=1)
 
 
-def _cells(problem: PoseProblem) -> Index:
+def cells_of(problem: PoseProblem) -> Index:
     """(M,) equal numbers for numbers of one axis, of poses and loads that were read again."""
     said, readings = problem.said, problem.measurements
     key = [problem.load_cases.pose, said.payload, *readings.wrench.T]
