@@ -141,7 +141,8 @@ def warn_of_branch(branch: Branch, path: LoadedPath) -> None:
         more = f" (and {len(branch.jumps) - 1} more pairs)" if len(branch.jumps) > 1 else ""
         warn(
             f"between lines {lines[k]} and {lines[k + 1]}{more} a joint moves by more "
-            "than 30 deg (or 0.5 m): the arm changes its posture there"
+            "than 30 deg (or 0.5 m): the arm changes its posture there, or the way between is long "
+            "and wants points of its own, as the correction in its middle does"
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from math import pi
+from math import isnan, pi
 from typing import TYPE_CHECKING
 
 from rich import box
@@ -51,13 +51,14 @@ def shown(block: report.Table) -> Table:
 
 
 def cell(value: object) -> str:
-    """A number with five significant digits, anything else as it is."""
+    """A number with five significant digits, "?" where it is not known, anything else as it is."""
     if isinstance(value, str):
         return visible(value)
     if isinstance(value, bool | int):
         return str(value)
     if isinstance(value, float) or hasattr(value, "__float__"):
-        return f"{float(value) + 0.0:.5g}"  # + 0.0 takes the sign off zero
+        number = float(value) + 0.0  # takes the sign off zero
+        return "?" if isnan(number) else f"{number:.5g}"
     return visible(str(value))
 
 

@@ -200,11 +200,18 @@ def _drives(columns: Array, told: int, n: int) -> int | None:
 
 
 def _clearly(now: Tried, other: Tried, ratio: float) -> bool:
-    """Is it better by more than luck and by more than laws that are not quite right?"""
+    """Is it better by more than luck and by more than laws that are not quite right?
+
+    The drives' compliances explain as many numbers of any readings: those beyond them tell.
+    """
+    told = min(now.sheet.told, other.sheet.told, now.found.count, other.found.count)
+    spare = told - now.sheet.robot.n
+    if spare <= 0:
+        return False
     if other.left <= 0.0:
         return now.left > 0.0
     gained = np.log(now.left / other.left)
-    return bool(gained > np.log(ratio) and now.sheet.told * gained > LUCK)
+    return bool(gained > np.log(ratio) and spare * gained > LUCK)
 
 
 def _turned(start: Tried) -> tuple[Tried | None, Correction | None]:

@@ -124,7 +124,14 @@ def refuse_unusable(model: Model, measurements: Measurements) -> None:
             where=f"{where}, line {line}" if line else where,
             remedy="Measure other loads, and other poses.",
         )
-    numbers = int(measurements.read[measurements.use].sum())
+    used = measurements.read & measurements.use[:, None]
+    if measurements.displacement is not None and not measurements.displacement[used].any():
+        raise InputError(
+            "every displacement is zero: nothing moved, so nothing is told of what yields",
+            where=where,
+            remedy="Check that the columns hold what was read under load, and not a zero reading.",
+        )
+    numbers = int(used.sum())
     if numbers < len(model.free):
         line = int(measurements.line[measurements.use][-1])
         raise InputError(

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 
 
 def um(metres: float) -> str:
-    """A length in micrometres: three digits, none after the point from 100 on."""
+    """A length in micrometres: three digits, none after the point from 100 on; "?": not known."""
+    if math.isnan(metres):
+        return "?"
     microns = 1e6 * metres
     return f"{microns:.0f}" if abs(microns) >= 99.95 else f"{microns:#.3g}"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
@@ -136,6 +138,12 @@ def shrinks(answer: Explanation) -> str:
     """By how much the gap fell on poses that no fit has seen."""
     first, last = answer.steps[0], answer.steps[-1]
     added = "it" if len(answer.findings) == 1 else "them"
+    if not math.isfinite(last.heldout_rms - first.heldout_rms):
+        return (
+            f"With {added} in the model the gap goes from {um(first.fit_rms)} to "
+            f"{um(last.fit_rms)} µm, at poses that it was fitted to: there are too few to leave "
+            f"any out; {noise_makes(answer)}."
+        )
     goes = "falls" if last.heldout_rms < first.heldout_rms else "does not fall: it goes"
     return (
         f"With {added} in the model the gap on poses left out of the fit {goes} from "

@@ -38,7 +38,8 @@ def slot(tmp_path: Path) -> Path:
 
 def compensated(run: Run, path: Path, out: Path, *more: str):
     return run("compensate", "motoman_sk120", str(path), "--frame", FRAME, "--wrench", WRENCH,
-               "--chord", "0.2 mm", "--out", str(out), "--json", *more)  # fmt: skip
+               "--chord", "0.2 mm", "--step", "1 m", "--out", str(out), "--json",
+               *more)  # fmt: skip
 
 
 def targets_of_csv(out: Path):
@@ -317,3 +318,27 @@ def test_joint_moves_that_a_language_does_not_have_are_refused(
     refused = compensated(run, slot, tmp_path / "out.nc", "--by-joints")
     assert refused.code == 2 and "no moves by joint values" in refused.error["message"]
     assert not (tmp_path / "out.nc").exists()
+
+
+def test_a_long_straight_move_is_divided_so_that_its_middle_is_corrected_too(
+    run: Run, tmp_path: Path
+) -> None:
+    """The middle of the way between corrected points is where the corrected middle is."""
+    path = tmp_path / "long.nc"
+    path.write_text("G21 G90 G17\nG0 X0 Y-200 Z50\nG1 Z0 F600\nG1 Y600\n")
+
+    def command(*more: str) -> np.ndarray:
+        out = tmp_path / "long.csv"
+        made = run("compensate", "motoman_sk120", str(path), "--frame", FRAME, "--wrench", WRENCH,
+                   "--out", str(out), "--json", *more)  # fmt: skip
+        assert made.code == 0, made.stderr
+        far = [w for w in made.document["warnings"] if "posture" in w]
+        assert bool(far) == (more == ("--step", "1 m"))
+        return targets_of_csv(out)[3]
+
+    usual, ends, fine = command(), command("--step", "1 m"), command("--step", "25 mm")
+    assert len(ends) == 3 and len(usual) == 18 and len(fine) == 35
+    middle = fine[18]  # 400 mm on
+    assert np.linalg.norm(0.5 * (ends[1] + ends[2]) - middle) > 2e-5
+    between = 0.5 * (usual[1:-1] + usual[2:])  # the fine ones that are none of the usual
+    assert np.linalg.norm(between - fine[3:-1:2], axis=1).max() < 1e-6

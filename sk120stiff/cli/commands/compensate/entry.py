@@ -25,6 +25,7 @@ from sk120stiff.cli.commands.compensate.files import (
 )
 from sk120stiff.cli.commands.compensate.path import (
     CHORD,
+    STEP,
     LoadAxes,
     PathOptions,
     open_path,
@@ -94,7 +95,7 @@ def command(
         ),
     ] = None,
     chord: Annotated[str | None, typer.Option(show_default=CHORD)] = None,
-    step: str | None = None,
+    step: Annotated[str | None, typer.Option(show_default=STEP)] = None,
     to: str | None = None,
     settings: Annotated[list[str] | None, typer.Option("--set")] = None,
     by_joints: bool = False,
@@ -138,7 +139,7 @@ def command(
             axis that the file states turns it. 'free': any orientation.
         chord (LENGTH): How far a chord of an arc may be off it.
         step (LENGTH): Longest straight feed move: longer ones are divided, and each part is
-            corrected. [default: as in the path]
+            corrected.
         to (LANGUAGE): csv, gcode, krl, rapid, ls, jbi or urscript. [default: by the ending of
             --out]
         settings (KEY=VALUE): What the language needs besides, such as tool=1 or pulses=…; the

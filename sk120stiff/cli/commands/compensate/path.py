@@ -21,6 +21,7 @@ from sk120stiff.units import parse_size, parse_wrench
 from sk120stiff.workspace import LoadedPath, read_path
 
 CHORD = "10 um"
+STEP = "50 mm"  # between points the correction goes straight, and off by the square of the way
 FREE_TOOL = (
     "The tool's orientation is free: it is not stated, and stays near that of the point before."
 )
@@ -97,9 +98,7 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
             remedy="Give the load at all its points: --wrench '0,0,-490 N'.",
         )
     chord = parse_size(options.chord or CHORD, "length", where="--chord", like=CHORD)
-    step = np.inf
-    if options.step is not None:
-        step = parse_size(options.step, "length", where="--step", like="10 mm")
+    step = parse_size(options.step or STEP, "length", where="--step", like="10 mm")
     tool = tool_rotation(options.tool_rpy or TOOL_DOWN)
     read = reader(file, chord=chord, step=step)
     if read.left_out:
@@ -113,7 +112,10 @@ def open_path(file: Path, robot: Robot, options: PathOptions) -> OpenedPath:
         else f"Tool in the part's axes: roll, pitch, yaw {options.tool_rpy or TOOL_DOWN}"
         + (", turned to the axis that the path states." if read.axis is not None else ".")
     )
-    arcs = f"Arcs: chords within {options.chord or CHORD}."
+    arcs = (
+        f"Arcs: chords within {options.chord or CHORD}. Straight feed moves: points at most "
+        f"{options.step or STEP} apart."
+    )
 
     def turned(angle: float) -> LoadedPath:
         about = None if tool is None else tool @ rotation_from_rpy(np.array([0.0, 0.0, angle]))
