@@ -95,6 +95,16 @@ def test_the_files_that_are_shown_can_be_read(desk: Path) -> None:
     assert len(read_model(desk / "model_by_hand.yaml").parameters) == 2
 
 
+def test_of_the_readings_that_are_shown_nothing_is_missing(desk: Path) -> None:
+    """Three rows are too few to doubt how they were written."""
+    done = subprocess.run(
+        [sys.executable, "-m", "sk120stiff", "explain", "own.csv", "--out", "own", "--json"],
+        cwd=desk, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["verdict"] == "none" and "Warning" not in done.stderr
+
+
 @pytest.fixture(scope="module")
 def explained(desk: Path) -> str:
     """What the README's own example prints, run as written."""

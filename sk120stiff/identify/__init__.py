@@ -18,6 +18,7 @@ from sk120stiff.identify.estimate import as_seen, likelier, refuse_unusable
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.report import fit_report
+from sk120stiff.identify.robust import far_off
 from sk120stiff.identify.run import (
     as_moved,
     fit,
@@ -46,6 +47,7 @@ __all__ = [
     "compare",
     "contradiction",
     "drawn_parts",
+    "far_off",
     "fit",
     "fit_report",
     "gauges_as_displacements",

@@ -15,6 +15,7 @@ from sk120stiff.explain.answer.words import accounted, mostly_accounted
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import comes_and_goes
 from sk120stiff.explain.localise.words import microns
+from sk120stiff.identify import far_off
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
@@ -29,6 +30,7 @@ STATED = {
 BY_NATURE = "that is how such gears are, no fault of the arm"
 REPEATS = "repeat a few readings (same pose and load), so that the noise is known from them"
 LARGE = 2.0  # times what noise alone makes
+FAR_OFF_TOLD = 5  # readings that are listed
 VAGUE = 0.5  # of its size, by which it is known, from where on a share is no advice
 
 
@@ -39,6 +41,7 @@ def next_step(answer: Explanation) -> str:
         [
             *_of_the_units(answer),
             *_of_the_file(answer),
+            *_of_rows_far_off(answer),
             *said[answer.verdict](answer),
             *filter(None, [steady_offsets(answer)]),
             *_of_a_balancer(answer),
@@ -55,6 +58,23 @@ def _of_the_units(answer: Explanation) -> list[str]:
     return [
         "Make sure of the units before anything else: a wrong one makes names and values. "
         f"{answer.units[0].upper()}{answer.units[1:]}. If they are right:"
+    ]
+
+
+def _of_rows_far_off(answer: Explanation) -> list[str]:
+    """Which readings lie far off the model, and were not set aside, before it is believed."""
+    readings, gap = answer.final.problem.measurements, answer.final.gap
+    rows = sorted(far_off(answer.final), key=lambda row: -float(np.nansum(gap[row] ** 2)))
+    if not rows or answer.findings:
+        return []
+    places = listed([place_of(readings, int(row)) for row in rows[:FAR_OFF_TOLD]])
+    more = f", the worst {places}" if len(rows) > FAR_OFF_TOLD else f": {places}"
+    one = len(rows) == 1
+    return [
+        f"{len(rows)} reading{' lies' if one else 's lie'} far off what the model makes of the "
+        f"others{more}. A cause that is not in the catalogue may have made "
+        f"{'it' if one else 'them'}; if {'it is a slip' if one else 'they are slips'}, a 0 in a "
+        f"column use leaves {'it' if one else 'them'} out: run this again without, and see."
     ]
 
 

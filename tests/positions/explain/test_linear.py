@@ -9,7 +9,7 @@ from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
 from sk120stiff.explain.positions.judge import posterior
-from sk120stiff.explain.positions.judge.posterior import alternatives, of_all, standing
+from sk120stiff.explain.positions.judge.posterior import alternatives, standing
 from sk120stiff.explain.positions.select.choose import (
     BEYOND_DOUBT,
     CLEAR,
@@ -198,19 +198,6 @@ def test_geometry_is_drawn_to_where_its_prior_stands():
     free = (np.full(3, -np.inf), np.full(3, np.inf))
     found = gauss_newton(lambda x: (J @ x - y, J), np.zeros(3), free, span, centre)
     assert np.allclose(found.x, best, atol=1e-2)
-
-
-def test_causes_that_stand_for_one_another_are_likely_together():
-    """Each takes off hardly anything beside the other; both a lot of what is left otherwise."""
-    made = linear(5.0, 5.0, sigma=0.3)
-    twin = made.columns[:, 0] + 0.03 * made.columns[:, 3]
-    made = replace(
-        made, columns=np.column_stack([made.columns[:, 0], twin, made.columns[:, 2:]]), smooth=0.8
-    )
-    alone = [alternatives(made.only((0, 1)), (0, 1), e)[1] for e in (0, 1)]
-    assert of_all(made, (0, 1)) > max(alone) + 0.1
-    nothing = replace(linear(0.0, 0.0), smooth=0.8)
-    assert of_all(nothing, (0, 1)) <= 0.5
 
 
 @pytest.mark.parametrize("borne_out", [True, False])
