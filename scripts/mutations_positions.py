@@ -66,6 +66,26 @@ OF_POSITIONS: tuple[Fault, ...] = (
         ties_exchanged=("odds[best] > odds[e] + MENTION", "odds[best] > odds[e] - 1e-9"),
     ),
     *of(
+        "explain/positions/judge/smooth_error.py", *tests("positions/explain", "smooth_error"),
+        an_error_that_costs_nothing=("problem.score(chosen, 1.0) - volume", "problem.score(chosen, 1.0)"),
+        only_the_error_that_is_left=("        for each in (*alike, sum(alike, 0.0) / max(len(alike), 1)):", "        for each in ():"),
+        the_base_forgotten_beside_an_error=("rest = white[:, P:] - Q @ (Q.T @ white[:, P:])", "rest = white[:, P:]"),
+    ),
+    *of(
+        "explain/positions/judge/fallen.py", *tests("positions/explain", "smooth_error"),
+        the_strongest_falls_first=("weakest = min(likely", "weakest = max(likely"),
+        what_came_to_nothing_stands=("    if gone := _nothing_left(linear, found, final):", "    if gone := []:"),
+        names_less_likely_than_not_stand=("if likely[weakest] >= EVEN:", "if likely[weakest] >= 0.0:"),
+    ),
+    *of(
+        "identify/positions/checks/parts.py", *tests("positions", "stations"),
+        a_tracker_that_goes_back=("int(np.argmin(best[: k + 1]))", "int(np.argmin(best))"),
+    ),
+    *of(
+        "measurements/placing/groups.py", *tests("positions/checks", "remounted"),
+        series_of_loaded_rows_without_a_place=("off = np.array([place.get(label, place.get(of[label], np.zeros(3))) for label in labels])", "off = apart"),
+    ),
+    *of(
         "explain/positions/judge/posterior.py", *POSITIONS,
         rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
     ),
@@ -177,7 +197,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "identify/positions/checks/slips.py", *tests("positions/checks", "joint_slips"),
-        a_slip_where_a_label_says_there_is_none=("for each in (best, *rivals) if each.cause in unsaid)", "for each in (best, *rivals))"),
+        a_slip_where_a_label_says_there_is_none=("if each.change.sure and each.cause in unsaid]", "if each.change.sure]"),
         a_law_of_the_joint_taken_for_a_slip=("<= CLEARER * steps.by_places", "<= 0.0"),
     ),
     *of(
@@ -205,7 +225,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "identify/positions/checks/slips.py", *tests("positions/checks", "slips"),
         a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
-        pushes_in_the_order_of_the_file=("rows = np.arange(readings.n_readings) if clock is None else clock", "rows = np.arange(readings.n_readings)"),
+        pushes_in_the_order_of_the_file=("if clock is None else clock\n", "\n"),
     ),
     *of(
         "measurements/importers/tracker/stations.py", *tests("measurements/importers/campaign", "several_files"),
