@@ -13,6 +13,7 @@ import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
+from sk120stiff.identify.positions.checks.parts import _one_after_the_other
 from sk120stiff.identify.positions.checks.reregistration import placed_anew
 from sk120stiff.measurements import write_measurements
 from sk120stiff.model import Model, read_model, write_model
@@ -244,3 +245,12 @@ def test_an_arm_that_changed_is_not_placed_away(
     path = read(tmp_path, 40, 79, np.zeros(40, dtype=int), other, label=False)
     assert placed_anew(one.model, sk.read(path).with_joints(NAMES)) is None
     assert (gap(one.model, path) > 5.0 * SIGMA) == (worse > 1.0)
+
+
+def test_a_tracker_never_goes_back() -> None:
+    """One row of the first half fits the second station by chance; the order may be another one."""
+    squares = np.ones((2, 12))
+    squares[0, :6], squares[1, 6:], squares[1, 2] = 0.1, 0.1, 0.0
+    assert _one_after_the_other(squares, np.arange(12.0)).tolist() == [0] * 6 + [1] * 6
+    turned = _one_after_the_other(squares[:, ::-1], np.arange(12.0)[::-1])
+    assert turned.tolist() == [1] * 6 + [0] * 6

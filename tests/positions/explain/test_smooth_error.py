@@ -11,13 +11,17 @@ import pytest
 from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 
+import sk120stiff as sk
 from sk120stiff.explain.positions.judge.fallen import with_one_less
 from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
-from sk120stiff.explain.positions.judge.smooth_error import SmoothError, in_units_of
+from sk120stiff.explain.positions.judge.smooth_error import SmoothError, beside_any, in_units_of
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.explain.positions.select.choose import Chosen
 from sk120stiff.explain.positions.select.linear import Linear
+from sk120stiff.identify.positions.calibrate import Calibration, calibrate
+from sk120stiff.identify.positions.noise.model_form import ModelForm
 from tests.positions.explain.test_linear import ROWS, linear
+from tests.positions.shared import campaign
 from tests.positions.unknown_error import drawn
 
 
@@ -112,3 +116,27 @@ def test_names_that_are_there_are_likely_beside_an_error_that_nobody_knows(
             assert truth.holds(item.effect.id, *item.alternatives), item.effect.id
     assert sum(item.probability > 0.9 for item in found.findings) >= 2
     assert all(item.probability >= 0.5 for item in found.findings)
+
+
+def test_errors_are_of_each_joint_and_of_all_and_go_with_the_load_where_that_differs(
+    tmp_path: Path,
+) -> None:
+    counts = []
+    for loads in ((0.0,), (0.0, 30.0)):
+        found = calibrated(campaign(tmp_path, 3, 24, loads=loads, markers="A"))
+        shown = linear(0.0)
+        count = len(found.problem.rows)
+        made = replace(
+            shown, residual=np.ones(count), base=np.eye(count)[:, :2], row=found.problem.rows,
+            columns=np.zeros((count, 4)), fold=np.zeros(count, dtype=np.intp),
+        )  # fmt: skip
+        form = ModelForm(0.5, 10.0, 10.0, 0.0, np.ones(7), np.ones(6) / 6.0, 1.0)
+        every = beside_any(made, found.problem, form).each
+        assert len({round(volume, 6) for _, volume in every}) == len(every)  # no two are one
+        counts.append(len(every))
+    assert counts == [1 + 3 * (1 + 6 + 1 + 1), 1 + 3 * (1 + 2 * (6 + 1) + 1)]
+
+
+def calibrated(readings: sk.Measurements) -> Calibration:
+    model = sk.base_model(sk.load_robot(readings.robot, base="base", tool="tool"))
+    return calibrate(model, readings, geometry=False, waves=False, shared=False)
