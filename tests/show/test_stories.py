@@ -162,12 +162,17 @@ def test_springs_before_and_after_are_told() -> None:
 
 
 def test_a_spring_that_came_out_at_a_quarter_is_75_percent_too_soft() -> None:
-    after = [SimpleNamespace(name="a", value=11.76), SimpleNamespace(name="b", value=3.0)]
+    """One that is not known beside the effect is no yardstick, and a rigid one is none."""
+    values = {"a": (11.76, 1.0), "b": (3.0, 0.5), "c": (9.0, 8.0), "d": (np.inf, None)}
+    after = [SimpleNamespace(name=n, value=v, std=std) for n, (v, std) in values.items()]
     for p in after:
         p.effect = SimpleNamespace(where=p.name, joint_spring=True)
-    before = {"a": SimpleNamespace(value=2.94), "b": SimpleNamespace(value=12.0)}
+    before = {
+        n: SimpleNamespace(value=v) for n, v in zip("abcd", (2.94, 12.0, 1.0, 1.0), strict=True)
+    }
     told = sizes_sections._told(before, after)
-    assert "too soft: a 75 %; too stiff: b 300 %" in told
+    assert told.endswith("too soft: a 75 %; too stiff: b 300 %.")
+    assert "told well enough" in sizes_sections._told(before, after[2:])
 
 
 def test_a_size_without_a_unit_has_no_blank_behind_it() -> None:

@@ -25,6 +25,7 @@ from sk120stiff.show.report import Block, Note, Picture, Section, Table
 from sk120stiff.show.wording import counted, number, percent, said_in, um, unit_of, with_error
 
 WORTH_TELLING = 0.01
+VAGUE = 0.5  # of its size, by which a value is known, from where on nothing is too soft beside it
 UNSEEN = "cannot be seen"
 
 
@@ -79,7 +80,10 @@ def estimates(
 
 def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
     # of what they are with the effect: 3 for 12 is 75 % too soft, 12 for 3 is 300 % too stiff
-    bent = [(p, before[p.name].value / p.value - 1.0) for p in after if p.value]
+    told = [p for p in after if p.value and (p.std or np.inf) < VAGUE * abs(p.value) < np.inf]
+    if not told:
+        return "No spring is told well enough with the added effect to say how far it had been off."
+    bent = [(p, before[p.name].value / p.value - 1.0) for p in told]
     bent = [(p, off) for p, off in bent if np.isfinite(off)]
     worth = sorted((b for b in bent if abs(b[1]) > WORTH_TELLING), key=lambda b: -abs(b[1]))
     if not worth:

@@ -80,8 +80,13 @@ def _ambiguous(answer: Explanation) -> str:
     open_ = [f for f in answer.findings if not f.settled]
     said = " ".join(settled)
     for finding in open_:
-        rivals = [sentence_of(answer, name) for name in finding.others]
-        said += f" {sentence_in(answer.final.model, finding.effect)}"
+        names = {name: sentence_of(answer, name) for name in finding.others}
+        names[finding.effect.id] = sentence_in(answer.final.model, finding.effect)
+        # the likeliest first, and the one that stands in the model before its equals
+        own = (finding.effect.id, *finding.others)
+        order = sorted(own, key=lambda name: -finding.evidence.odds.get(name, 0.0))
+        first, *rivals = (names[name] for name in order)
+        said += f" {first}"
         if not rivals:
             said += f" That is not sure ({likely(finding.probability, 'probability')})."
             continue
