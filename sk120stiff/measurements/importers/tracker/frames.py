@@ -26,6 +26,7 @@ from sk120stiff.robot.rotations import rotation_vector
 
 TURNED_ROUGHLY = np.radians(15.0)  # what a marker that sits elsewhere may turn a cloud by
 SLIGHT = np.radians(0.5)  # errors of geometry turn a cloud by less
+EITHER = 1.1  # times as much left by deviations of the other sign, which are not told apart then
 VAGUE = np.radians(1.0)  # standard error of a turn that registers nothing
 
 
@@ -112,6 +113,12 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         doubts.append(
             f"With deviations of the other sign (nominal minus measured) {1e3 * other.rms:.3g} mm "
             f"would be left, not {1e3 * fitted.rms:.3g} mm: ask where the file comes from."
+        )
+    elif fitted and other and other.rms < EITHER * fitted.rms:
+        doubts.append(
+            "These positions do not tell the sign of the deviations: measured minus nominal leaves "
+            f"{1e3 * fitted.rms:.3g} mm, nominal minus measured {1e3 * other.rms:.3g} mm. With the "
+            "wrong one a calibration makes the arm worse: ask where the file comes from."
         )
     return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
 
