@@ -15,7 +15,7 @@ from sk120stiff.effects.base import (
     Weighing,
 )
 from sk120stiff.effects.catalogue import CATALOGUE, Catalogue, all_effects, effect
-from sk120stiff.effects.counting import Counting, referred
+from sk120stiff.effects.counting import Counting, Sequential, referred
 from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.options import Options
@@ -41,6 +41,7 @@ __all__ = [
     "ParameterSpec",
     "ReadingError",
     "Reference",
+    "Sequential",
     "Switching",
     "Viewpoint",
     "Weighing",

@@ -9,6 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects.base import Geometric, scale_of
+from sk120stiff.effects.counting import Sequential
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
@@ -16,7 +17,7 @@ from sk120stiff.robot import Robot
 
 
 @dataclass(frozen=True)
-class ApproachSide(Geometric):
+class ApproachSide(Sequential, Geometric):
     """A joint that comes from below stops short, one that comes from above stops far."""
 
     slides: bool = False

@@ -11,8 +11,17 @@ from sk120stiff.effects.base import Effect
 from sk120stiff.effects.reference import Reference
 
 
+class Sequential(Effect):
+    """What a reading has may be of those before it, as what moved in between is."""
+
+    @property
+    def over_time(self) -> bool:
+        """Goes from reading to reading, whatever the pose is."""
+        return True
+
+
 @dataclass(frozen=True)
-class Counting(Effect):
+class Counting(Sequential):
     """An effect that goes with the temperature, the time or the order of positions.
 
     Displacements have a zero reading, which is their reference.
@@ -31,7 +40,7 @@ class Counting(Effect):
 
     @property
     def over_time(self) -> bool:
-        """Goes from reading to reading, as what moved in between does, whatever the arm does."""
+        """See `Sequential.over_time`: the temperature is that of the reading itself."""
         return self.goes_with != "temperature"
 
     def referred(self, references: Iterable[Reference]) -> Self:

@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.effects import Counting, Effect, Elastic, LoadError, Weighing
+from sk120stiff.effects import Effect, Elastic, LoadError, Sequential, Weighing
 from sk120stiff.effects.foundation import BaseRocking
 from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 
@@ -279,11 +279,11 @@ class Linear:
 def everything(linear: Linear) -> tuple[Array, Array]:
     """Columns (M, P + K) of base and candidates, and inverse variances (P + K,) of their factors.
 
-    In units of what all of them leave together. Courses of time are left out: beside them nothing
-    stands that moved from a reading on, which is held against courses of its own.
+    In units of what all of them leave together. What goes from reading to reading is left out:
+    beside it nothing stands that moved from a reading on, which is held against courses of time.
     """
     every = enumerate(linear.candidates)
-    lasting = [e for e, each in every if not (isinstance(each, Counting) and each.over_time)]
+    lasting = [e for e, each in every if not (isinstance(each, Sequential) and each.over_time)]
     noise = linear.noise(tuple(lasting))
     columns = [linear.columns[:, linear.slices[e]] for e in lasting]
     prior = [np.zeros(linear.base.shape[1]), *(np.full(each.shape[1], noise) for each in columns)]

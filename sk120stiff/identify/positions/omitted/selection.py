@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask, lengths_of
-from sk120stiff.effects import Catalogue, Counting, Effect, LoadError, referred
+from sk120stiff.effects import Catalogue, Effect, LoadError, Sequential, referred
 from sk120stiff.identify.checks.left_over import beside, orthonormal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.noise.sizes import of_poses
@@ -92,10 +92,10 @@ class Blocks:
         return self._with(unit, [isinstance(cause, LoadError) for cause in self.causes])
 
     def beside_all(self, unit: float) -> tuple[Array, Array]:
-        """The same of estimates and of all causes that may be at work, but for courses of time:
-        beside them nothing stands that moved from a reading on.
+        """The same of estimates and of all causes that may be at work, but for what goes from
+        reading to reading: beside it nothing stands that moved from a reading on.
         """
-        lasting = [not (isinstance(each, Counting) and each.over_time) for each in self.causes]
+        lasting = [not (isinstance(each, Sequential) and each.over_time) for each in self.causes]
         return self._with(unit, lasting)
 
     def _with(self, unit: float, wanted: Sequence[bool]) -> tuple[Array, Array]:
