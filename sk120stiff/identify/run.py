@@ -102,7 +102,7 @@ def _fit_positions(
     """Positions, or what loads move of several points.
 
     Raises:
-        Moved: Something moved among them.
+        MovedBetween: Something moved among them.
     """
     placed = _rigid(model, readings)
     refuse_other_forces(placed, readings)

@@ -6,7 +6,7 @@ from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.files.gauges_alone import as_displacements
 from sk120stiff.measurements.files.reading import read_measurements
 from sk120stiff.measurements.files.writing import write_measurements
-from sk120stiff.measurements.moved import Moved, taken_as_moved
+from sk120stiff.measurements.moved import MovedBetween, taken_as_moved
 from sk120stiff.measurements.noise.law import NoiseModel, candidates, decided
 from sk120stiff.measurements.noise.line_of_sight import may_have_rays, seen_from
 from sk120stiff.measurements.noise.model_form import EXACT, FormWhitener, ModelForm
@@ -21,7 +21,7 @@ __all__ = [
     "Instrument",
     "Measurements",
     "ModelForm",
-    "Moved",
+    "MovedBetween",
     "NoiseModel",
     "NoiseStatement",
     "Whitener",

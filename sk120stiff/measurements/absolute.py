@@ -54,6 +54,7 @@ class Absolute:
         series: N labels of what may have changed in between, or None.
         stations: N labels of where the instrument stood, or None.
         zero: How the zero readings of gauges are shared, as stated.
+        found: Which of ``station`` and ``series`` no file states: they were found (`moved.py`).
     """
 
     channels: Channels
@@ -70,6 +71,7 @@ class Absolute:
     fit_axes: bool = False
     stations: tuple[str, ...] | None = None
     zero: Literal["shared", "separate", "unknown"] = "unknown"
+    found: tuple[str, ...] = ()
 
     def select(self, index: Index) -> Absolute:
         """Some of the rows."""
@@ -87,6 +89,16 @@ class Absolute:
             series=cut(self.series),
             stations=cut(self.stations),
         )
+
+    @property
+    def stated_stations(self) -> tuple[str, ...] | None:
+        """`stations`, where the file states them."""
+        return None if "station" in self.found else self.stations
+
+    @property
+    def stated_series(self) -> tuple[str, ...] | None:
+        """`series`, where the file states them."""
+        return None if "series" in self.found else self.series
 
     @property
     def payload_differs(self) -> bool:

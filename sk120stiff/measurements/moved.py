@@ -23,7 +23,7 @@ MOST = 3  # different things that moved in one campaign: more are no campaign
 Column = Literal["station", "series"]
 
 
-class Moved(InputError):
+class MovedBetween(InputError):
     """Tracker, marker or a joint moved between rows, and the file tells nothing of it.
 
     Attributes:
@@ -45,12 +45,20 @@ class Moved(InputError):
 
 
 def labelled(readings: Measurements, column: Column, part: Sequence[int] | Index) -> Measurements:
-    """The same absolute readings with a label for each (N,) part of the campaign: a, b, ..."""
-    labels, said = tuple(chr(ord("a") + int(k)) for k in part), readings.absolute
+    """The same absolute readings with a label for each (N,) part of the campaign: a, b, ...
+
+    What was found before is kept: each of its parts may have parts of its own.
+    """
+    said = readings.absolute
     if said is None:
         return readings
+    known = said.stations if column == "station" else said.series
+    pairs = list(zip(known or [""] * len(part), map(int, part), strict=True))
+    every = sorted(dict.fromkeys(pairs))
+    labels = tuple(chr(ord("a") + every.index(pair)) for pair in pairs)
+    found = tuple(dict.fromkeys([*said.found, column]))
     told = replace(said, stations=labels) if column == "station" else replace(said, series=labels)
-    return replace(readings, absolute=told)
+    return replace(readings, absolute=replace(told, found=found))
 
 
 def turned_from(readings: Measurements, joint: int, by: Array) -> Measurements:
@@ -61,9 +69,10 @@ def turned_from(readings: Measurements, joint: int, by: Array) -> Measurements:
     more = np.zeros_like(readings.joints)
     more[:, joint] = by
     first = dict(zip(reversed(readings.pose), by[::-1], strict=True))
+    sizes = np.unique(by).tolist()
     pose = tuple(
-        label if off == first[label] else f"{label} {off:+.3g}"
-        for label, off in zip(readings.pose, by, strict=True)
+        label if off == first[label] else f"{label} ({sizes.index(off) + 1})"
+        for label, off in zip(readings.pose, by.tolist(), strict=True)
     )
     return replace(readings, joints=readings.joints + more, pose=pose)
 
@@ -75,7 +84,7 @@ def taken_as_moved(
 
     Args:
         readings: As they were read.
-        work: What is done with them; it raises `Moved`.
+        work: What is done with them; it raises `MovedBetween`.
 
     Returns:
         Its result, and sentences of what moved.
@@ -84,6 +93,12 @@ def taken_as_moved(
     for _ in range(MOST):
         try:
             return work(readings), told
-        except Moved as moved:
+        except MovedBetween as moved:
             readings, told = moved.apart, (*told, moved.sentences)
-    return work(readings), told
+    if readings.absolute is not None:  # no more is looked for of what was found so often
+        readings = replace(readings, absolute=replace(readings.absolute, found=()))
+    try:
+        return work(readings), told
+    except MovedBetween as moved:
+        found = f"{' '.join(told)} Then: {moved.what}"
+        raise InputError(found, where=moved.where, remedy=moved.remedy) from moved

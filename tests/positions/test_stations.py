@@ -254,3 +254,24 @@ def test_a_tracker_never_goes_back() -> None:
     assert _one_after_the_other(squares, np.arange(12.0)).tolist() == [0] * 6 + [1] * 6
     turned = _one_after_the_other(squares[:, ::-1], np.arange(12.0)[::-1])
     assert turned.tolist() == [1] * 6 + [0] * 6
+
+
+def test_a_wild_row_tips_no_rows_into_another_station(two: Calibration, tmp_path: Path) -> None:
+    where = (np.arange(30) >= 14).astype(int)
+    readings = sk.read(read(tmp_path, 30, 83, where, label=False)).with_joints(NAMES)
+    said = readings.absolute
+    assert said is not None and said.channels.position is not None
+    x = said.channels.position.copy()
+    x[5] = 0.9 * x[20] + 0.1 * x[5]  # nearer to where the second station has it
+    there = replace(said, channels=replace(said.channels, position=x))
+    found = placed_anew(two.model, replace(readings, absolute=there))
+    assert found is not None and found.readings.absolute is not None
+    assert found.readings.absolute.stations == tuple("north" if k == 0 else "south" for k in where)
+
+
+def test_few_rows_without_a_station_are_of_those_that_are_known(
+    two: Calibration, tmp_path: Path
+) -> None:
+    readings = sk.read(read(tmp_path, 2, 83, np.ones(2, dtype=int), label=False))
+    found = placed_anew(two.model, readings.with_joints(NAMES))
+    assert found is not None and found.model is two.model

@@ -135,7 +135,7 @@ def _explained(
     """See `explain_positions`.
 
     Raises:
-        Moved: Something moved among the readings.
+        MovedBetween: Something moved among the readings.
     """
     catalogue = model.catalogue
     tell("registering the tracker", 0.05)
@@ -186,6 +186,7 @@ def _explained(
                 guessed = held_out_rms(linear, found.order, seen, inside)
                 found, laws = nothing_named(linear, found), {}
                 final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
+                linear = _beside_errors(linear, seen, final)
             else:
                 jointly = (
                     "None of these names is likely by itself, since each may stand for the others; "
@@ -352,7 +353,14 @@ def _beside_errors(linear: Linear, seen: Calibration, final: Calibration) -> Lin
     """The linear problem as names are judged by it: beside errors like what the fit leaves."""
     if final.form is None:
         return replace(linear, independent=None, errors=None)
-    errors = beside_any(linear, seen.problem, final.form)
+    before, after = seen.problem, final.problem
+    same = np.array_equal(before.measurements.joints, after.measurements.joints)
+    if same and np.array_equal(before.rows, after.rows):  # in units of the noise beside the names
+        there = linear.in_units_of(before.of_channels, after.of_channels)
+        errors = beside_any(there, after, final.form)
+    else:  # other rows are wild beside the names
+        ratio = float(np.median(after.of_channels.sigma) / np.median(before.of_channels.sigma))
+        errors = beside_any(linear, before, final.form.in_units(ratio))
     return replace(linear, independent=final.form.independent, errors=errors)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from sk120stiff.arrays import Index
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.moved import Moved, labelled
+from sk120stiff.measurements.moved import MovedBetween, labelled
 from sk120stiff.measurements.placing.cloud import Cloud
 from sk120stiff.measurements.placing.slips import moved_at, shifted_at
 
@@ -26,16 +26,17 @@ def refuse_from_a_row_on(
         readings, rows: Where they come from.
 
     Raises:
-        Moved: The tracker did.
+        MovedBetween: The tracker did.
         InputError: They stand in other rows.
     """
     line, moved = readings.line[rows], None
-    if readings.absolute is not None and readings.absolute.frame == "unknown":
+    said = readings.absolute
+    if said is not None and said.frame == "unknown" and said.stations is None:
         moved = moved_at(cloud)
     if moved is not None and moved[0] < least:
         rms, row = moved
         part = (np.arange(readings.n_readings) >= rows[row]).astype(np.intp)
-        raise Moved(
+        raise MovedBetween(
             f"{told}. The tracker looks moved between lines {line[row - 1]} and {line[row]}: with "
             f"another frame from there on {1e3 * rms:.3g} mm are left",
             where=readings.place,

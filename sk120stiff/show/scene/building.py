@@ -198,11 +198,13 @@ def _off_the_last(
     if position is None or not models:
         return None, {}
     at: dict[str, Array] = {}
+    parts = placed_anew([*models.values()][-1], used)
+    if parts is not None and parts.parts:  # rows without a station have that of the best model
+        used = parts.readings
+        load_cases = load_cases_of(parts.model.robot, used)
     for name, model in models.items():
         moved = placed_anew(model, used)
-        if moved is not None:
-            model, used = moved.model, moved.readings
-            load_cases = load_cases_of(model.robot, used)
+        model = model if moved is None else moved.model
         try:
             said = predict(model, used).position
         except InputError:

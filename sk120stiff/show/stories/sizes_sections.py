@@ -80,7 +80,7 @@ def estimates(
 
 def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
     # of what they are with the effect: 3 for 12 is 75 % too soft, 12 for 3 is 300 % too stiff
-    told = [p for p in after if p.value and (p.std or np.inf) < VAGUE * abs(p.value) < np.inf]
+    told = [p for p in after if p.value and _error(p) < VAGUE * abs(p.value) < np.inf]
     if not told:
         return "No spring is told well enough with the added effect to say how far it had been off."
     bent = [(p, before[p.name].value / p.value - 1.0) for p in told]
@@ -102,6 +102,10 @@ def _told(before: dict[str, Parameter], after: list[Parameter]) -> str:
         "Springs fitted alone cover up for what is missing. Without the added effect they had come "
         f"out {'; '.join(said)}."
     )
+
+
+def _error(p: Parameter) -> float:
+    return np.inf if p.std is None else p.std
 
 
 def _blind(unseen: Mapping[str, str]) -> list[Block]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sk120stiff as sk
 from sk120stiff.explain.positions.answer.explained import Explained
 from tests.positions.arm import Array, errors, poses, tracked
 from tests.positions.checks.test_slips import CLOCK, COUNT, A, explain, fit, read, told
@@ -45,6 +46,10 @@ def test_with_what_the_remedy_says_the_arm_comes_out(tmp_path: Path) -> None:
     by = re.search(r"add to values of j3 (\S+) deg", told(taken))
     assert by is not None
     mended = A + np.radians(float(by[1])) * AFTER * np.eye(6)[2]
+    given = sk.read(read(tmp_path, x, A)).with_joints(taken.model.robot.actuated)
+    off = sk.predict(taken.model, given).gap(given)
+    size = np.sqrt(np.nanmean(off**2, axis=1))
+    assert size[AFTER[:, 0]].max() < 1e-4 < size[~AFTER[:, 0]].max()  # the arm as it stands since
     for found in (taken, fit(read(tmp_path, x, mended))):
         assert found.rms < 1.3 * 2e-5
         stiffness = found.model.parameter("joint_springs:j2.stiffness").value

@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
+from sk120stiff.errors import InputError
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.model import Model
@@ -164,3 +165,39 @@ def test_an_arm_of_other_laws_along_a_sorted_plan_is_not_taken_for_a_push(
     found = sk.fit(model, sk.read(path), waves=False)
     assert found.rms > 1.5 * SIGMA
     assert isinstance(found, Calibration) and not any("looks moved" in n for n in found.notes)
+
+
+def test_a_second_push_is_found_beside_the_first_which_was_large(tmp_path: Path) -> None:
+    """The placing finds the large one, the fit the small one; labels of the file are none here."""
+    away = Rotation.from_rotvec([0.2, -0.1, 0.4]).apply(X) + [0.3, -0.2, 0.1]
+    x = np.where((np.arange(COUNT) >= 25)[:, None], away, X)
+    x = pushed(x, np.arange(COUNT) >= 60)
+    found = fit(read(tmp_path, x, A))
+    said = " ".join(note for note in found.notes if "looks moved" in note)
+    assert "between lines 26 and 27" in said and "between lines 61 and 62" in said
+    assert found.rms < 1.2 * SIGMA
+    assert found.model.parameter("joint_springs:j2.stiffness").value == pytest.approx(8e5, rel=0.03)
+
+
+def test_rows_read_at_one_time_are_cut_where_they_stand(tmp_path: Path) -> None:
+    """Blocks of ten rows share a time, as a log of the day has it."""
+    times = [f"{60.0 * (k // 10)}" for k in range(COUNT)]
+    path = read(tmp_path, pushed(X, np.arange(COUNT) >= 37), A, more=",time[s]", cells=times)
+    found = fit(path)
+    assert "between lines 38 and 39" in told(found)
+    assert found.rms < 1.2 * SIGMA and not found.wild.any()
+
+
+def test_masked_rows_are_of_the_part_they_stand_in(tmp_path: Path) -> None:
+    use = ["0" if k in (10, 36, 37, 50) else "1" for k in range(COUNT)]
+    path = read(tmp_path, pushed(X, np.arange(COUNT) >= 37), A, more=",use", cells=use)
+    found = fit(path)
+    assert "between lines 37 and 40" in told(found) and found.rms < 1.2 * SIGMA
+
+
+def test_one_label_for_all_stands_though_the_tracker_moved_far(tmp_path: Path) -> None:
+    away = Rotation.from_rotvec([0.2, -0.1, 0.4]).apply(X) + [0.3, -0.2, 0.1]
+    x = np.where((np.arange(COUNT) >= 25)[:, None], away, X)
+    path = read(tmp_path, x, A, more=",station", cells=["all"] * COUNT)
+    with pytest.raises(InputError, match="not where this robot's marker goes"):
+        fit(path)

@@ -72,16 +72,17 @@ def beside_any(linear: Linear, problem: PoseProblem, form: ModelForm) -> SmoothE
     """The linear problem beside what errors of the model may be.
 
     Args:
-        linear: It.
-        problem: What it was linearised from.
+        linear: It, in units of the noise of `problem`.
+        problem: The readings, as they were fitted beside the chosen names.
         form: What is left beside the chosen names.
     """
     rows = some_rows(problem)
     part = np.isin(linear.row, rows)
     here = replace(problem, measurements=problem.measurements.select(rows))
-    some = replace(
-        linear, base=linear.base[part], residual=linear.residual[part], row=linear.row[part],
-        columns=linear.columns[part],
+    U, told, _ = np.linalg.svd(linear.base[part], full_matrices=False)
+    some = replace(  # of a station that is not among these rows the base tells nothing here
+        linear, base=U[:, told > 1e-9 * told.max(initial=1e-300)], residual=linear.residual[part],
+        row=linear.row[part], columns=linear.columns[part], errors=None,
     )  # fmt: skip
     return SmoothError(tuple(in_units_of(some, V) for V in _covariances(here, form)))
 

@@ -170,8 +170,12 @@ class Linear:
 
     def whitened(self, before: PoseWhitening, after: PoseWhitening) -> Linear:
         """The same numbers with other uncertainties."""
-        if before.common == after.common:
-            return self
+        return self if before.common == after.common else self.in_units_of(before, after)
+
+    def in_units_of(self, before: PoseWhitening, after: PoseWhitening) -> Linear:
+        """The same numbers in units of another noise; columns of the base are no longer one long
+        and may hold each other.
+        """
         residual, base, columns = (
             after.apply(before.undo(each)) for each in (self.residual, self.base, self.columns)
         )

@@ -19,6 +19,8 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.model.pose_reading import read_poses
 
+FAR = 8.0  # times the median distance: rows that do not tell where the tracker stands
+
 
 @dataclass(frozen=True, eq=False)
 class Parts:
@@ -57,7 +59,8 @@ def by_stations(
     ])  # fmt: skip
     order = readings.order if readings.order is not None else readings.time
     clock = np.arange(float(readings.n_readings)) if order is None else order
-    own = _one_after_the_other(off**2, clock[whole])
+    most = FAR * float(np.median(off.min(axis=0)))  # a wild row tells of no station
+    own = _one_after_the_other(np.minimum(off, most) ** 2, clock[whole])
     later = [clock[whole][own >= k] for k in range(1, len(stations))]
     starts = [float(own.min(initial=np.inf)) for own in later]
     median = float(np.median(off[own, np.arange(len(x))]))

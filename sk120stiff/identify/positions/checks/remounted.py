@@ -15,7 +15,7 @@ from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.change_points import Steps
 from sk120stiff.identify.positions.residuals.pure_error import cells_of_numbers
 from sk120stiff.identify.positions.solve.pose_problem import absolute_of
-from sk120stiff.measurements import Measurements, Moved
+from sk120stiff.measurements import Measurements, MovedBetween
 from sk120stiff.measurements.moved import labelled
 
 
@@ -34,12 +34,12 @@ def refuse_remounted(
             variances (P,) of their factors.
 
     Raises:
-        Moved: Another place takes off half the square of what all else leaves.
+        MovedBetween: Another place takes off half the square of what all else leaves.
     """
     problem = found.problem
     said, measured = problem.said, problem.measurements
     place = [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)]
-    if said.series is not None or not place or "position" not in problem.channels.present:
+    if said.stated_series is not None or not place or "position" not in problem.channels.present:
         return ()
     masses, heavier = np.unique(said.payload, return_inverse=True)
     own, rows = found.jacobian[:, place], problem.rows
@@ -66,7 +66,7 @@ def refuse_remounted(
     )
     if change.sure:
         part = np.searchsorted(masses[list(change.cuts)], absolute_of(readings).payload, "right")
-        raise Moved(
+        raise MovedBetween(
             looks, where=readings.place, remedy=remedy, apart=labelled(readings, "series", part),
             taken="Taken so here: a place of its own under each.",
         )  # fmt: skip

@@ -88,22 +88,25 @@ def placed_anew(model: Model, readings: Measurements) -> PlacedAnew | None:
         p.spec.name.rpartition(".")[0] for p in model.parameters if p.effect is view
     )
     strange = not set(labels) <= set(known)
-    if strange:
+    rows = load_cases_of(model.robot, readings).rows(np.flatnonzero(whole))
+    x = said.channels.position[whole]
+    several = strange and len(known) > 1
+    parts = by_stations(model, readings, list(known), rows, whole) if several else None
+    if strange and parts is None:
         stands_for_all(labels, stood[whole], readings)
     fewest = np.bincount(stood[whole], minlength=len(labels)).min()
     if fewest < FEWEST and not strange:
         return None
-    rows = load_cases_of(model.robot, readings).rows(np.flatnonzero(whole))
-    x = said.channels.position[whole]
     before = np.nan
     if not strange:
         before = float(np.median(np.linalg.norm(x - read_poses(model, rows).position, axis=1)))
     bare, best = model.without(view.id), None
     goal = np.inf if strange else BETTER * before
-    parts = by_stations(model, readings, list(known), rows, whole) if strange else None
     if parts is not None:
         goal, told = BETTER * parts.left, parts.readings
         best = PlacedAnew(model, told, False, parts.left, parts.left, parts.sentence)
+        if fewest < FEWEST:
+            return best
     for marker in (False, True)[: 1 + (fewest >= OF_MARKER)]:
         found = _trimmed(bare, rows, x, stood[whole], fit_marker=marker)
         moved = None if found is None else _moved(model, view, found, readings)

@@ -30,11 +30,12 @@ from sk120stiff.identify.positions.checks.slips_in_words import looks_of, remedy
 from sk120stiff.identify.positions.residuals.pure_error import cells_of_numbers
 from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
-from sk120stiff.measurements import Measurements, Moved
+from sk120stiff.measurements import Measurements, MovedBetween
 from sk120stiff.measurements.moved import labelled, turned_from
 
 PUSHED = Cause("the tracker", "station", "a frame of its own")
 SLIPPED = Cause("the marker", "series", "a place of its own on the tool")
+OF = {PUSHED: 6, SLIPPED: 3}  # numbers of one place
 ROUNDING = 1e-7  # m or rad; what no instrument reads, and no jump is told of
 
 
@@ -52,14 +53,14 @@ def refuse_pushed(
         prior: (P,) inverse variances of their factors, in units of what is left.
 
     Raises:
-        Moved: One did, between lines that the message tells.
+        MovedBetween: One did, between lines that the message tells.
     """
     problem = found.problem
     if not isinstance(problem, PoseProblem) or "distance" in problem.channels.present:
         return ()
     if found.rms < ROUNDING:
         return ()
-    told = {"station": problem.said.stations, "series": problem.said.series}
+    told = {"station": problem.said.stated_stations, "series": problem.said.stated_series}
     suspects = list[Suspect]()
     for white in weighings(problem):
         here = _suspects(found, problem, white, others, prior)
@@ -79,8 +80,8 @@ def refuse_pushed(
     moved = [each for each in (best, *rivals) if each.change.sure and each.cause in unsaid]
     if moved:
         least = min(moved, key=lambda each: each.left)
-        raise Moved(
-            looks, where=readings.place, remedy=remedy, taken=taken_of(problem, when, least, best),
+        raise MovedBetween(
+            looks, where=readings.place, remedy=remedy, taken=taken_of(least, best),
             apart=_apart(readings, np.flatnonzero(readings.use & ~found.wild), least),
         )  # fmt: skip
     return (f"{looks[0].upper()}{looks[1:]}. {remedy}",)
@@ -94,13 +95,19 @@ def _apart(readings: Measurements, rows: Index, moved: Suspect) -> Measurements:
         rows: Those of them that took part.
         moved: What moved among these.
     """
-    clock = _clock(readings)
-    first = np.sort(clock[rows])[list(moved.change.cuts)]  # of every part but the first
-    part = np.searchsorted(first, clock, side="right")
+    own = np.full(readings.n_readings, -1)
+    own[rows] = np.searchsorted(moved.change.cuts, _ranks(_clock(readings)[rows]), side="right")
+    part = np.zeros(readings.n_readings, dtype=np.intp)
+    now = 0
+    for row in np.argsort(
+        _clock(readings), kind="stable"
+    ):  # what is masked is of the part it is in
+        now = max(now, int(own[row]))
+        part[row] = now
     if moved.cause.joint is None:
         return labelled(readings, moved.cause.column, part)
     by = np.concatenate([[0.0], np.cumsum(moved.sizes[:, 0])])
-    return turned_from(readings, moved.cause.joint, by[part])
+    return turned_from(readings, moved.cause.joint, by[part] - by[-1])
 
 
 def weighings(problem: PoseProblem) -> Iterator[PoseWhitening]:
@@ -135,19 +142,27 @@ def _suspects(
         PUSHED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, Viewpoint)],
         SLIPPED: [k for k, p in enumerate(found.parameters) if isinstance(p.effect, ToolOffset)],
     }
-    told = {PUSHED: problem.said.stations, SLIPPED: problem.said.series}
+    told = {PUSHED: problem.said.stated_stations, SLIPPED: problem.said.stated_series}
     pose = cells_of_numbers(problem, problem.measurements.pose_index[:, None])
     raw = problem.of_channels.undo(found.jacobian)
-    away = white.apply(raw[:, [k for columns in frames.values() for k in columns]])
+    moves = {cause: _of_one_place(raw[:, columns], OF[cause]) for cause, columns in frames.items()}
+    away = white.apply(np.hstack([*moves.values()]))
     left, others, prior = weighed(problem, white, found, others, prior)
     nothing = Steps(others, prior, left, away, when[problem.rows], a[problem.rows], pose, away)
     suspects = list[Suspect]()
     for cause, columns in frames.items():
         if columns and told[cause] is None:
-            own = white.apply(raw[:, columns])
-            suspects += variants(cause, replace(nothing, frame=own, creeps=own), raw[:, columns])
+            own = white.apply(moves[cause])
+            suspects += variants(cause, replace(nothing, frame=own, creeps=own), moves[cause])
     moved = any(each.change.sure for each in suspects)
     return suspects + _of_joints(problem, white, nothing, moved)
+
+
+def _of_one_place(columns: Array, numbers: int) -> Array:
+    """(M, p) how a place moves readings, wherever it was: those of several that were found."""
+    if columns.shape[1] % numbers:
+        return columns
+    return np.asarray(columns.reshape(len(columns), -1, numbers).sum(axis=1))
 
 
 def _of_joints(
@@ -177,8 +192,13 @@ def _of_joints(
 
 def _when(readings: Measurements) -> Index:
     """(N,) place of each row in the order in which they were read, which is that of the file."""
-    clock = np.argsort(_clock(readings), kind="stable")
-    return np.asarray(np.argsort(clock, kind="stable"), dtype=np.intp)
+    return _ranks(_clock(readings))
+
+
+def _ranks(clock: Array) -> Index:
+    """(N,) place of each in their order; those that are alike keep theirs."""
+    order = np.argsort(clock, kind="stable")
+    return np.asarray(np.argsort(order, kind="stable"), dtype=np.intp)
 
 
 def _clock(readings: Measurements) -> Array:

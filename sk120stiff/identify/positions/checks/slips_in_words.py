@@ -66,17 +66,18 @@ def remedy_of(
     )
 
 
-def taken_of(problem: PoseProblem, when: Index, taken: Suspect, best: Suspect) -> str:
+def taken_of(taken: Suspect, best: Suspect) -> str:
     """How the readings are taken from here on.
 
     Args:
-        problem, when: They.
         taken: What moved as they are taken.
         best: What moved most likely.
     """
     if taken.cause.joint is not None:
-        by = _added(problem, when, taken)
-        return f"Taken so here: to values of {taken.cause.what} is added {by}."
+        return (
+            f"Taken so here: values of {taken.cause.what} that were read before are put right by "
+            "as much, so that the model is of the arm as it stands since."
+        )
     own = f"{taken.cause.own} for each part of the campaign"
     if taken.cause == best.cause:
         return f"Taken so here: {own}."

@@ -57,6 +57,11 @@ class ModelForm:
     by_joint: Array
     noise: float
 
+    def in_units(self, ratio: float) -> ModelForm:
+        """Of numbers whose unit of noise is so many times smaller."""
+        sizes = np.append(self.sizes[:-1], ratio**2 * self.sizes[-1])
+        return replace(self, noise=ratio**2 * self.noise, sizes=sizes)
+
 
 def model_form(found: Fit) -> ModelForm | None:
     """The smooth error that a fit leaves; None where noise alone may have left it."""
