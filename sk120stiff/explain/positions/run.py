@@ -34,7 +34,7 @@ from sk120stiff.explain.positions.judge.accounts import (
     suspects_of,
 )
 from sk120stiff.explain.positions.judge.changed import changed
-from sk120stiff.explain.positions.judge.fallen import with_one_less, with_own_values
+from sk120stiff.explain.positions.judge.fallen import TOGETHER, with_one_less, with_own_values
 from sk120stiff.explain.positions.judge.laws import (
     Laws,
     beside_laws,
@@ -81,7 +81,6 @@ from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
 FEWEST_LOADED = 6  # the same where each is read by what loads do, several numbers to a pose
-TOGETHER = 0.8  # the same of all of them as one, where each may stand for the others
 MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
 from sk120stiff.explain.answer.words import accounted, mostly_accounted
@@ -143,6 +144,11 @@ def shrinks(answer: Explanation) -> str:
     """By how much the gap fell on poses that no fit has seen."""
     first, last = answer.steps[0], answer.steps[-1]
     added = "it" if len(answer.findings) == 1 else "them"
+    if any(
+        f.effect.id != max(f.evidence.odds, key=f.evidence.odds.__getitem__, default=f.effect.id)
+        for f in answer.findings
+    ):  # a likelier one was said first
+        added = listed([f.effect.id for f in answer.findings])
     if not math.isfinite(last.heldout_rms - first.heldout_rms):
         return (
             f"With {added} in the model the gap goes from {um(first.fit_rms)} to "

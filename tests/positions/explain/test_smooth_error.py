@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,6 +21,7 @@ from sk120stiff.explain.positions.select.choose import Chosen
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
 from sk120stiff.identify.positions.noise.model_form import ModelForm
+from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from tests.positions.explain.test_linear import ROWS, linear
 from tests.positions.shared import campaign
 from tests.positions.unknown_error import drawn
@@ -94,6 +96,31 @@ def test_names_fall_one_at_a_time_the_weakest_first(monkeypatch: pytest.MonkeyPa
     assert found.order == (0,) and sorted(order) == [1, 2]
 
 
+def test_names_that_stand_for_one_another_stay_together() -> None:
+    """Each takes off hardly anything beside the other; both a lot of what is left otherwise."""
+    made = linear(2.5, 0.0)
+    twin = made.columns[:, 0] + 0.03 * made.columns[:, 3]
+    made = replace(made, columns=np.column_stack([made.columns[:, 0], twin, made.columns[:, 2:]]))
+    made = replace(made, errors=errors(made, (0.0, 1.0)))
+    likely = [alternatives(made, (0, 1), e)[1] for e in (0, 1)]
+    assert max(likely) < 0.75 and of_all(made, (0, 1)) > 0.95
+
+
+def test_a_station_of_which_no_row_is_asked_tells_nothing() -> None:
+    """Columns of the base that are nothing, or one, among the rows that errors are judged at."""
+    made = linear(2.0)
+    none = np.column_stack([made.base, 0.0 * made.base[:, 0], made.base @ [1.0, 1.0]])
+    problem = calibrated_problem(ROWS)
+    form = ModelForm(0.5, 10.0, 10.0, 0.0, np.zeros(7), np.ones(6) / 6.0, 1.0)
+    row = problem.rows
+    scores = []
+    for base in (made.base, none):
+        there = replace(made, base=base, row=row)
+        found = beside_any(there, problem, form)
+        scores.append(found.score((0,)) - found.score(()))
+    assert np.isfinite(scores).all() and scores[0] == pytest.approx(scores[1], abs=1e-6)
+
+
 def test_a_name_that_comes_out_as_nothing_falls_though_it_fits_alone() -> None:
     made = linear(3.0, 3.0)
     own = [SimpleNamespace(effect=made.candidates[e], internal=v) for e, v in ((0, 1.0), (1, 0.0))]
@@ -135,6 +162,12 @@ def test_errors_are_of_each_joint_and_of_all_and_go_with_the_load_where_that_dif
         assert len({round(volume, 6) for _, volume in every}) == len(every)  # no two are one
         counts.append(len(every))
     assert counts == [1 + 3 * (1 + 6 + 1 + 1), 1 + 3 * (1 + 2 * (6 + 1) + 1)]
+
+
+def calibrated_problem(numbers: int) -> PoseProblem:
+    with TemporaryDirectory() as folder:
+        found = calibrated(campaign(Path(folder), 3, numbers // 3, loads=(0.0,), markers="A"))
+    return found.problem
 
 
 def calibrated(readings: sk.Measurements) -> Calibration:

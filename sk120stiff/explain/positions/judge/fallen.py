@@ -7,12 +7,15 @@ the set that foretells best, too (Barbieri & Berger, Ann. Stat. 32, 2004, p. 870
 
 from __future__ import annotations
 
-from sk120stiff.explain.positions.judge.posterior import alternatives
+from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
 from sk120stiff.explain.positions.select.choose import Chosen, confirmed, gain
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify.positions.calibrate import Calibration
 
 EVEN = 0.5  # probability below which a name falls
+TOGETHER = (
+    0.8  # of all of them as one, from which on none falls where each may stand for the others
+)
 
 
 def with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen:
@@ -45,6 +48,8 @@ def with_one_less(linear: Linear, found: Chosen, final: Calibration) -> Chosen |
     weakest = min(likely, key=lambda e: likely[e])
     if likely[weakest] >= EVEN:
         return None
+    if max(likely.values()) < EVEN and of_all(linear, found.order) >= TOGETHER:
+        return None  # each may stand for the others
     why = (
         f"fits, and at poses left out takes off {100 * gains[weakest].share:.1f} % of the gap; but "
         f"an error of the model that nobody knows may do as much (P = {likely[weakest]:.2f})."

@@ -27,7 +27,7 @@ def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:
     if linear.errors is None:
         return 1.0
     odds = linear.errors.score(chosen) - linear.errors.score(())
-    return float(expit(odds))
+    return float(expit(odds - np.log(len(linear.candidates) + 1.0)))
 
 
 def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
