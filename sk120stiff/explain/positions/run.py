@@ -121,7 +121,8 @@ def explain_positions(
         return _explained(model, taken, holdout, options, progress or (lambda _what, _share: None))
 
     found, moved = taken_as_moved(readings, work)
-    return replace(found, final=replace(found.final, notes=(*moved, *found.final.notes)))
+    final = replace(found.final, notes=(*moved, *found.final.notes))
+    return replace(found, final=final, moved=moved)
 
 
 def _explained(

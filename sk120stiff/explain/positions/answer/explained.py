@@ -108,6 +108,7 @@ class Explained:
         following: Readings that would tell the first open pair of names apart, or None.
         readings: What was explained, masked rows included.
         heldout: The gap at readings kept out of everything; None where there were none.
+        moved: What was taken as moved in the middle of the campaign, in sentences.
     """
 
     verdict: str
@@ -133,6 +134,7 @@ class Explained:
     following: NextPoses | None
     readings: Measurements
     heldout: HeldOutFile | None = None
+    moved: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         names = ", ".join(item.effect.id for item in self.findings)

@@ -56,6 +56,12 @@ def _one_of(answer: Explained, item: Named) -> str:
     return " or ".join((item.effect.id, *worth, *more))
 
 
+MOVED = (
+    "Before anything else make sure that tracker, marker or joint moved in the middle of the file "
+    "as it was taken (see what else was found): all that follows rests on it."
+)
+
+
 def next_step_of_positions(answer: Explained) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
@@ -68,6 +74,7 @@ def next_step_of_positions(answer: Explained) -> str:
     held = None if answer.heldout is None else answer.heldout.borne_out
     if held is not None and held.contradicted:
         said = [held.advice(unit)]
+    said = [MOVED, *said] if answer.moved else said
     named = {item.effect.id for item in answer.findings}
     most = next((share for share in answer.budget if share.name in named), None)
     if answer.displaced and most is not None:
