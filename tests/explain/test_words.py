@@ -54,6 +54,7 @@ class Answered:
     borne_out: Any = None
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
     slips: dict[int, str] = field(default_factory=dict)
+    far_off: tuple[tuple[str, float], ...] = ()
 
     @property
     def adequacy(self) -> Adequacy:
@@ -88,6 +89,19 @@ def test_what_has_a_place_is_not_called_noise() -> None:
     assert "it is no noise" in second and PLACE in second and "repeats" not in second
     assert noise_words(unknown) == unknown.noise_reasons
     assert "repeats" in noise_words(unknown)[1]
+
+
+def test_readings_far_off_are_listed_before_anything_is_believed() -> None:
+    few = tuple((f"line {k} (pose A)", 4e-4) for k in range(2, 5))
+    said = next_step(Answered(verdict="outside", far_off=few))
+    assert said.startswith(
+        "3 readings lie far off what the model makes of the others: line 2 (pose A) "
+    )
+    assert "400 µm" in said and "a 0 in a column use leaves them out" in said
+    assert "1 reading lies far off" in next_step(Answered(verdict="outside", far_off=few[:1]))
+    many = next_step(Answered(verdict="outside", far_off=3 * few))
+    assert "9 readings lie far off what the model makes of the others, the worst line 2" in many
+    assert "far off what" not in next_step(Answered())
 
 
 def test_what_to_do_now_sends_to_the_place_where_one_is_known() -> None:

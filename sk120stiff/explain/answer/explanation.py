@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.data_checks import slips_of_rows
+from sk120stiff.data_checks import place_of, slips_of_rows
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options, load_cases_of
 from sk120stiff.errors import ToolkitError
 from sk120stiff.explain.findings import Apart, Contender, Detectable, Finding, Step, TaskBudget
@@ -19,7 +19,7 @@ from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.borne_out import BorneOut
 from sk120stiff.explain.judge.budget import error_budget, joint_budget
 from sk120stiff.explain.judge.remainder import Remainder
-from sk120stiff.identify import Fit, Yardstick, as_seen, known_together, yardstick
+from sk120stiff.identify import Fit, Yardstick, as_seen, far_off, known_together, yardstick
 from sk120stiff.measurements import Measurements, NoiseModel
 from sk120stiff.model import Share
 from sk120stiff.model.predicted import predict_what_holds
@@ -127,6 +127,18 @@ class Explanation:
     def joints_budget(self) -> tuple[Share, ...]:
         """What spring, gear and bearing of each joint move the point by together."""
         return joint_budget(self.final)
+
+    @property
+    def far_off(self) -> tuple[tuple[str, float], ...]:
+        """Readings far off the model that were not set aside, the worst first, and by how much [m].
+
+        Where nothing has a name: a cause that has none may have made them.
+        """
+        if self.findings:
+            return ()
+        readings, size = self.final.problem.measurements, np.sqrt(np.nansum(self.final.gap**2, 1))
+        rows = sorted(far_off(self.final).tolist(), key=lambda row: -float(size[row]))
+        return tuple((place_of(readings, row), float(size[row])) for row in rows)
 
     @cached_property
     def slips(self) -> Mapping[int, str]:

@@ -15,7 +15,6 @@ from sk120stiff.explain.answer.words import accounted, mostly_accounted
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import comes_and_goes
 from sk120stiff.explain.localise.words import microns
-from sk120stiff.identify import far_off
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
@@ -63,15 +62,14 @@ def _of_the_units(answer: Explanation) -> list[str]:
 
 def _of_rows_far_off(answer: Explanation) -> list[str]:
     """Which readings lie far off the model, and were not set aside, before it is believed."""
-    readings, gap = answer.final.problem.measurements, answer.final.gap
-    rows = sorted(far_off(answer.final), key=lambda row: -float(np.nansum(gap[row] ** 2)))
-    if not rows or answer.findings:
+    far = answer.far_off
+    if not far:
         return []
-    places = listed([place_of(readings, int(row)) for row in rows[:FAR_OFF_TOLD]])
-    more = f", the worst {places}" if len(rows) > FAR_OFF_TOLD else f": {places}"
-    one = len(rows) == 1
+    places = listed([f"{place} by {microns(size)}" for place, size in far[:FAR_OFF_TOLD]])
+    more = f", the worst {places}" if len(far) > FAR_OFF_TOLD else f": {places}"
+    one = len(far) == 1
     return [
-        f"{len(rows)} reading{' lies' if one else 's lie'} far off what the model makes of the "
+        f"{len(far)} reading{' lies' if one else 's lie'} far off what the model makes of the "
         f"others{more}. A cause that is not in the catalogue may have made "
         f"{'it' if one else 'them'}; if {'it is a slip' if one else 'they are slips'}, a 0 in a "
         f"column use leaves {'it' if one else 'them'} out: run this again without, and see."
