@@ -34,7 +34,12 @@ from sk120stiff.explain.positions.judge.accounts import (
     suspects_of,
 )
 from sk120stiff.explain.positions.judge.changed import changed
-from sk120stiff.explain.positions.judge.fallen import TOGETHER, with_one_less, with_own_values
+from sk120stiff.explain.positions.judge.fallen import (
+    TOGETHER,
+    borne_out,
+    with_one_less,
+    with_own_values,
+)
 from sk120stiff.explain.positions.judge.laws import (
     Laws,
     beside_laws,
@@ -168,6 +173,7 @@ def _explained(
     tell("what is left", 0.85)
     final = with_model_form(final)
     linear = _beside_errors(_as_fitted(linear, found, final), seen, final)
+    whole = linear, found, laws, final
     while lost := with_one_less(linear, found, final):
         found = lost
         laws = {e: own for e, own in laws.items() if e in found.order}
@@ -177,13 +183,15 @@ def _explained(
     suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
     if final.form is not None:
         likely = [alternatives(linear, found.order, e)[1] for e in found.order]
-        if likely and max(likely) < EVEN:
-            if (together := of_all(linear, found.order)) < TOGETHER:
-                inside = numbers_told(seen, final, readings)
-                guess = beside_laws(final, linear, found.order, laws)
+        alone = len(likely) == 1 and not borne_out(linear, found.order)
+        if likely and (alone or max(likely) < EVEN):
+            if alone or (together := of_all(linear, found.order)) < TOGETHER:
+                there, names, by_laws, fitted = whole  # with all that fell
+                inside = numbers_told(seen, fitted, readings)
+                guess = beside_laws(fitted, there, names.order, by_laws)
                 guess = beside_parts(guess, catalogue, options.exclude)
-                suspects = suspects_of(linear, found, seen, inside)
-                guessed = held_out_rms(linear, found.order, seen, inside)
+                suspects = suspects_of(there, names, seen, inside)
+                guessed = held_out_rms(there, names.order, seen, inside)
                 found, laws = nothing_named(linear, found), {}
                 final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
                 linear = _beside_errors(linear, seen, final)

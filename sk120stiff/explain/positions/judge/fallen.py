@@ -27,18 +27,23 @@ def with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen
     return Chosen(apart, {**found.dropped, **gone}) if gone else found
 
 
+def borne_out(linear: Linear, chosen: tuple[int, ...]) -> bool:
+    """Do poses left out bear every one of the chosen out?"""
+    return all(confirmed(gain(linear, chosen, e), linear) for e in chosen)
+
+
 def with_one_less(linear: Linear, found: Chosen, final: Calibration) -> Chosen | None:
     """Without the weakest name that does not stand; None: all do.
 
     Of the last one the caller says what becomes of it where it is not likely.
     """
+    if len(found.order) < 2:
+        return None
     gains = {e: gain(linear, found.order, e) for e in found.order}
     weak = [e for e, each in gains.items() if not confirmed(each, linear)]
     if weak:
         why = "is not confirmed by poses left out, beside the others as they were fitted."
         return _fallen(linear, found, min(weak, key=lambda e: gains[e].errors), why)
-    if len(found.order) < 2:
-        return None
     if gone := _nothing_left(linear, found, final):
         why = "fits alone, but beside the others as they were fitted comes out as nothing."
         return _fallen(linear, found, gone[0], why)
