@@ -44,6 +44,25 @@ class MovedBetween(InputError):
         return f"{self.what[0].upper()}{self.what[1:]}. {self.taken} {self.remedy}"
 
 
+def clock_of(readings: Measurements) -> Array:
+    """(N,) when each row was read: its order, its time, or else its place in the file."""
+    clock = readings.order if readings.order is not None else readings.time
+    return np.arange(float(readings.n_readings)) if clock is None else clock
+
+
+def parts_of_all(readings: Measurements, rows: Index, part: Index) -> Index:
+    """(N,) part of every row, where (P,) parts of some rows are known, one after the other.
+
+    What is masked is of the part that it stands in.
+    """
+    known = np.zeros(readings.n_readings, dtype=np.intp)
+    known[rows] = part
+    order = np.argsort(clock_of(readings), kind="stable")
+    every = np.empty_like(known)
+    every[order] = np.maximum.accumulate(known[order])
+    return every
+
+
 def labelled(readings: Measurements, column: Column, part: Sequence[int] | Index) -> Measurements:
     """The same absolute readings with a label for each (N,) part of the campaign: a, b, ...
 

@@ -251,9 +251,25 @@ def test_a_tracker_never_goes_back() -> None:
     """One row of the first half fits the second station by chance; the order may be another one."""
     squares = np.ones((2, 12))
     squares[0, :6], squares[1, 6:], squares[1, 2] = 0.1, 0.1, 0.0
-    assert _one_after_the_other(squares, np.arange(12.0)).tolist() == [0] * 6 + [1] * 6
-    turned = _one_after_the_other(squares[:, ::-1], np.arange(12.0)[::-1])
-    assert turned.tolist() == [1] * 6 + [0] * 6
+    own, left = _one_after_the_other(squares, np.arange(12.0))
+    assert own.tolist() == [0] * 6 + [1] * 6 and left == pytest.approx(1.2)
+    own, left = _one_after_the_other(squares[:, ::-1], np.arange(12.0)[::-1])
+    assert own.tolist() == [1] * 6 + [0] * 6 and left == pytest.approx(1.2)
+
+
+@pytest.mark.parametrize("shuffled", [False, True])
+def test_the_order_in_which_stations_were_stood_for_is_found(
+    two: Calibration, shuffled: bool, tmp_path: Path
+) -> None:
+    """South before north, in the order of the file or of a column."""
+    where = (np.arange(30) < 16).astype(int)
+    readings = sk.read(read(tmp_path, 30, 83, where, label=False)).with_joints(NAMES)
+    rows = np.random.default_rng(1).permutation(30) if shuffled else np.arange(30)
+    readings = replace(readings.select(rows), order=rows.astype(float))
+    found = placed_anew(two.model, readings)
+    assert found is not None and found.readings.absolute is not None
+    told = np.array(found.readings.absolute.stations)
+    assert ((told == "south") == (where[rows] == 1)).all()
 
 
 def test_a_wild_row_tips_no_rows_into_another_station(two: Calibration, tmp_path: Path) -> None:

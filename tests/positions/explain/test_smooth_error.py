@@ -15,7 +15,7 @@ from scipy.stats import multivariate_normal
 import sk120stiff as sk
 from sk120stiff.explain.positions.judge.fallen import with_one_less
 from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
-from sk120stiff.explain.positions.judge.smooth_error import SmoothError, beside_any, in_units_of
+from sk120stiff.explain.positions.judge.smooth_error import SmoothError, beside_any, of_errors
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.explain.positions.select.choose import Chosen
 from sk120stiff.explain.positions.select.linear import Linear
@@ -34,7 +34,7 @@ def smooth(size: float) -> np.ndarray:
 
 
 def errors(made: Linear, sizes: tuple[float, ...]) -> SmoothError:
-    return SmoothError(tuple(in_units_of(made, smooth(size)) for size in sizes))
+    return of_errors(made, (smooth(size) for size in sizes))
 
 
 def dense(made: Linear, V: np.ndarray, chosen: tuple[int, ...]) -> float:
@@ -59,7 +59,7 @@ def test_the_likeliest_errors_alone_say_the_same_but_for_their_number() -> None:
     made = linear(2.0)
     every = errors(made, tuple(np.geomspace(1e-3, 1e3, 20)))
     few = every.likeliest([(0,), ()])
-    assert len(few.each) < len(every.each)
+    assert len(few.at) < len(every.at)
     gained = [each.score((0,)) - each.score(()) for each in (every, few)]
     assert gained[0] == pytest.approx(gained[1], abs=0.25)
 
@@ -103,7 +103,7 @@ def test_names_that_stand_for_one_another_stay_together() -> None:
     made = replace(made, columns=np.column_stack([made.columns[:, 0], twin, made.columns[:, 2:]]))
     made = replace(made, errors=errors(made, (0.0, 1.0)))
     likely = [alternatives(made, (0, 1), e)[1] for e in (0, 1)]
-    assert max(likely) < 0.75 and of_all(made, (0, 1)) > 0.95
+    assert of_all(made, (0, 1)) > max(likely) + 0.1
 
 
 def test_a_station_of_which_no_row_is_asked_tells_nothing() -> None:

@@ -58,8 +58,10 @@ def test_waves_that_stand_for_sag_are_not_sure_beside_what_they_leave(tmp_path: 
     found = explained(readings(tmp_path, a, noisy(arm.stands(a)[0], 2), FIT + "massless"))
     assert found.findings and found.steps[-1].heldout_rms < 0.5 * found.steps[0].heldout_rms
     assert found.verdict == "ambiguous"
-    frames = {item.effect.id for item in found.findings if "frame" in item.effect.id}
-    assert frames < {item.effect.id for item in found.findings}  # all frames are off in this arm
+    for item in found.findings:  # all frames are off in this arm, and joints 2 to 6 yield
+        if item.probability >= 0.95:
+            names = {item.effect.id, *item.alternatives}
+            assert any(name.startswith(("joint_frame", "joint_springs")) for name in names), names
     assert max(p for name, p in found.probabilities.items() if "frame" not in name) < 0.95
     entry = remainder_entry(found.final)
     low, high = entry["interval_95"]

@@ -6,7 +6,7 @@ import numpy as np
 
 from sk120stiff.explain.advise.detectable import length_named
 from sk120stiff.explain.findings import Detectable
-from sk120stiff.explain.positions.judge.posterior import standing
+from sk120stiff.explain.positions.judge.posterior import scores_beside, standing
 from sk120stiff.explain.positions.select.choose import (
     SHARE,
     SURE,
@@ -65,13 +65,13 @@ def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
     for e in found.order:
         for name, share in standing(linear, found.order, e).items():
             out[name] = max(out.get(name, 0.0), share)
-    noise = linear.noise(found.order)
-    now = linear.score(found.order, noise)
+    score = scores_beside(linear, found.order)
+    now = score(found.order)
     for e in linear.may_join(found.order):
         effect = linear.candidates[e]
         if e in found.dropped or effect.id in out:
             continue
-        odds = linear.score((*found.order, e), noise) - now - entry_price(linear, e)
+        odds = score((*found.order, e)) - now - entry_price(linear, e)
         share = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
         wider = (*found.order, e)
         if share > UNLIKELY and not confirmed(gain(linear, wider, e), linear):

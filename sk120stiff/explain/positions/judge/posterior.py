@@ -51,7 +51,7 @@ def _rivals(
     do not: few readings far from all others make as much.
     """
     rest = linear.less(chosen, e)
-    score = _scores(linear, chosen, rest)
+    score = scores_beside(linear, chosen, rest)
     own, nothing = score(chosen), score(rest)
     frames = set(frames_of(linear))
     alone = e in frames and frames & set(rest)  # no frame is exact where others are off
@@ -80,17 +80,18 @@ def _rivals(
     return rivals, prior, weight
 
 
-def _scores(
-    linear: Linear, chosen: tuple[int, ...], rest: tuple[int, ...]
+def scores_beside(
+    linear: Linear, chosen: tuple[int, ...], *others: tuple[int, ...]
 ) -> Callable[[tuple[int, ...]], float]:
     """The evidence of sets beside what is left of the chosen, or beside errors that may be there.
 
     Args:
         linear: The positions linearised.
-        chosen, rest: A set, and the same without one.
+        chosen: A set.
+        others: Sets like it, that have their say in which errors may be there.
     """
     if linear.errors is not None:
-        return linear.errors.likeliest((chosen, rest)).score
+        return linear.errors.likeliest((chosen, *others)).score
     noise = linear.noise(chosen)
     return lambda each: linear.score(each, noise)
 

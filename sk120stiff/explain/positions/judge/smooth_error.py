@@ -9,9 +9,8 @@ costs the likelihood what a spread of possible errors costs. That is all that sp
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import linalg
@@ -39,33 +38,39 @@ class SmoothError:
 
     Attributes:
         each: Of every error the problem, of which its base takes part, and logarithms of its size.
+        at: Those of them that count.
+        known: What was scored before, by error and set.
     """
 
     each: tuple[tuple[Linear, float], ...]
+    at: tuple[int, ...]
+    known: dict[tuple[int, frozenset[int]], float] = field(default_factory=dict)
 
     def score(self, chosen: tuple[int, ...]) -> float:
         """Logarithm of the evidence, over all errors alike, up to a constant of all models."""
-        scores = [self._one(k, chosen) for k in range(len(self.each))]
+        scores = [self._one(k, chosen) for k in self.at]
         return float(logsumexp(scores) - np.log(len(scores)))
 
     def likeliest(self, sets: Sequence[tuple[int, ...]]) -> SmoothError:
         """The errors alone that are likeliest beside any of these sets."""
         kept = set[int]()
         for chosen in sets:
-            scores = [self._one(k, chosen) for k in range(len(self.each))]
-            kept |= set(np.argsort(scores)[::-1][:KEPT].tolist())
-        return SmoothError(tuple(self.each[k] for k in sorted(kept)))
+            ranked = sorted(self.at, key=lambda k: self._one(k, chosen), reverse=True)
+            kept |= set(ranked[:KEPT])
+        return replace(self, at=tuple(sorted(kept)))
 
     def _one(self, k: int, chosen: tuple[int, ...]) -> float:
         key = k, frozenset(chosen)
-        if key not in self._known:
+        if key not in self.known:
             problem, volume = self.each[k]
-            self._known[key] = problem.score(chosen, 1.0) - volume
-        return self._known[key]
+            self.known[key] = problem.score(chosen, 1.0) - volume
+        return self.known[key]
 
-    @cached_property
-    def _known(self) -> dict[tuple[int, frozenset[int]], float]:
-        return {}
+
+def of_errors(linear: Linear, covariances: Iterable[Array]) -> SmoothError:
+    """The linear problem of M numbers beside errors of these covariances (M, M)."""
+    each = tuple(in_units_of(linear, V) for V in covariances)
+    return SmoothError(each, tuple(range(len(each))))
 
 
 def beside_any(linear: Linear, problem: PoseProblem, form: ModelForm) -> SmoothError:
@@ -84,7 +89,7 @@ def beside_any(linear: Linear, problem: PoseProblem, form: ModelForm) -> SmoothE
         linear, base=U[:, told > 1e-9 * told.max(initial=1e-300)], residual=linear.residual[part],
         row=linear.row[part], columns=linear.columns[part], errors=None,
     )  # fmt: skip
-    return SmoothError(tuple(in_units_of(some, V) for V in _covariances(here, form)))
+    return of_errors(some, _covariances(here, form))
 
 
 def in_units_of(linear: Linear, V: Array) -> tuple[Linear, float]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -16,9 +17,11 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases
 from sk120stiff.errors import listed
 from sk120stiff.measurements import Measurements
+from sk120stiff.measurements.moved import clock_of, parts_of_all
 from sk120stiff.model import Model
 from sk120stiff.model.pose_reading import read_poses
 
+FEW = 4  # stations of which every order is tried
 FAR = 8.0  # times the median distance: rows that do not tell where the tracker stands
 
 
@@ -45,7 +48,7 @@ def by_stations(
     Args:
         model: It knows where the instrument stood.
         readings: They name no station.
-        stations: Labels, in the order in which they were stood for.
+        stations: Labels; of a few the order in which they were stood for is found, too.
         rows: Load cases of the whole positions.
         whole: (N,) which these are.
     """
@@ -57,17 +60,16 @@ def by_stations(
         np.linalg.norm(x - read_poses(model, _from(rows, label)).position, axis=1)
         for label in stations
     ])  # fmt: skip
-    order = readings.order if readings.order is not None else readings.time
-    clock = np.arange(float(readings.n_readings)) if order is None else order
     most = FAR * float(np.median(off.min(axis=0)))  # a wild row tells of no station
-    own = _one_after_the_other(np.minimum(off, most) ** 2, clock[whole])
-    later = [clock[whole][own >= k] for k in range(1, len(stations))]
-    starts = [float(own.min(initial=np.inf)) for own in later]
-    median = float(np.median(off[own, np.arange(len(x))]))
-    parts = np.searchsorted(starts, clock, side="right")
-    labels = tuple(stations[k] for k in parts)
+    squares, when = np.minimum(off, most) ** 2, clock_of(readings)[whole]
+    ways = permutations(range(len(stations))) if len(stations) <= FEW else [range(len(stations))]
+    tried = ((way, *_one_after_the_other(squares[list(way)], when)) for way in ways)
+    way, own, _ = min(tried, key=lambda each: each[2])
+    parts = parts_of_all(readings, np.flatnonzero(whole), own)
+    labels = tuple(stations[way[k]] for k in parts)
     told = replace(readings, absolute=replace(said, stations=labels))
-    return Parts(told, median, _sentence(readings, stations, parts, clock))
+    median = float(np.median(off[[way[k] for k in own], np.arange(len(x))]))
+    return Parts(told, median, _sentence(told, labels))
 
 
 def _from(rows: LoadCases, label: str) -> LoadCases:
@@ -75,9 +77,9 @@ def _from(rows: LoadCases, label: str) -> LoadCases:
     return replace(rows, station=here, station_names=(label,))
 
 
-def _one_after_the_other(squares: Array, clock: Array) -> Index:
-    """(N,) the station of each row, never one before that of an earlier row: the least sum."""
-    order = np.argsort(clock, kind="stable")
+def _one_after_the_other(squares: Array, when: Array) -> tuple[Index, float]:
+    """(N,) the station of each row, never one before that of an earlier row, and the least sum."""
+    order = np.argsort(when, kind="stable")
     count = squares.shape[0]
     best = np.zeros(count)
     came = np.zeros((len(order), count), dtype=np.intp)
@@ -89,17 +91,16 @@ def _one_after_the_other(squares: Array, clock: Array) -> Index:
     for at in range(len(order) - 1, -1, -1):
         own[order[at]] = k
         k = int(came[at, k])
-    return own
+    return own, float(best.min())
 
 
-def _sentence(readings: Measurements, stations: Sequence[str], own: Index, clock: Array) -> str:
+def _sentence(readings: Measurements, labels: Sequence[str]) -> str:
     """Which rows were taken for which station."""
-    order = np.argsort(clock, kind="stable")
-    said = []
-    for k in np.unique(own):
-        rows = order[own[order] == k]
-        line = readings.line[rows]
-        said.append(f"lines {line[0]} to {line[-1]} from {stations[k]}")
+    order = np.argsort(clock_of(readings), kind="stable")
+    lines: dict[str, list[int]] = {}
+    for row in order:
+        lines.setdefault(labels[row], []).append(int(readings.line[row]))
+    said = [f"lines {own[0]} to {own[-1]} from {label}" for label, own in lines.items()]
     return (
         f"The file names no station, and the model knows several: {listed(said)} are taken for "
         "that, as they fit best one after the other. A column station says otherwise."

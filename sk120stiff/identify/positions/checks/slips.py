@@ -31,7 +31,7 @@ from sk120stiff.identify.positions.residuals.pure_error import cells_of_numbers
 from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements, MovedBetween
-from sk120stiff.measurements.moved import labelled, turned_from
+from sk120stiff.measurements.moved import clock_of, labelled, parts_of_all, turned_from
 
 PUSHED = Cause("the tracker", "station", "a frame of its own")
 SLIPPED = Cause("the marker", "series", "a place of its own on the tool")
@@ -95,15 +95,8 @@ def _apart(readings: Measurements, rows: Index, moved: Suspect) -> Measurements:
         rows: Those of them that took part.
         moved: What moved among these.
     """
-    own = np.full(readings.n_readings, -1)
-    own[rows] = np.searchsorted(moved.change.cuts, _ranks(_clock(readings)[rows]), side="right")
-    part = np.zeros(readings.n_readings, dtype=np.intp)
-    now = 0
-    for row in np.argsort(
-        _clock(readings), kind="stable"
-    ):  # what is masked is of the part it is in
-        now = max(now, int(own[row]))
-        part[row] = now
+    own = np.searchsorted(moved.change.cuts, _ranks(clock_of(readings)[rows]), side="right")
+    part = parts_of_all(readings, rows, own)
     if moved.cause.joint is None:
         return labelled(readings, moved.cause.column, part)
     by = np.concatenate([[0.0], np.cumsum(moved.sizes[:, 0])])
@@ -191,17 +184,11 @@ def _of_joints(
 
 
 def _when(readings: Measurements) -> Index:
-    """(N,) place of each row in the order in which they were read, which is that of the file."""
-    return _ranks(_clock(readings))
+    """(N,) place of each row in the order in which they were read."""
+    return _ranks(clock_of(readings))
 
 
 def _ranks(clock: Array) -> Index:
     """(N,) place of each in their order; those that are alike keep theirs."""
     order = np.argsort(clock, kind="stable")
     return np.asarray(np.argsort(order, kind="stable"), dtype=np.intp)
-
-
-def _clock(readings: Measurements) -> Array:
-    """(N,) when each row was read, be it by its place in the file."""
-    clock = readings.order if readings.order is not None else readings.time
-    return np.arange(float(readings.n_readings)) if clock is None else clock
