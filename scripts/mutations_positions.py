@@ -82,6 +82,11 @@ OF_POSITIONS: tuple[Fault, ...] = (
         a_tracker_that_goes_back=("int(np.argmin(best[: k + 1]))", "int(np.argmin(best))"),
     ),
     *of(
+        "measurements/moved.py", *tests("positions/checks", "slips"),
+        pushes_in_the_order_of_the_file=("if clock is None else clock\n", "\n"),
+        masked_rows_of_the_first_part=("np.maximum.accumulate(known[order])", "known[order]"),
+    ),
+    *of(
         "measurements/placing/groups.py", *tests("positions/checks", "remounted"),
         series_of_loaded_rows_without_a_place=("off = np.array([place.get(label, place.get(of[label], np.zeros(3))) for label in labels])", "off = apart"),
     ),
@@ -225,7 +230,6 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "identify/positions/checks/slips.py", *tests("positions/checks", "slips"),
         a_push_where_labels_say_there_is_none=("if columns and told[cause] is None", "if columns"),
-        pushes_in_the_order_of_the_file=("if clock is None else clock\n", "\n"),
     ),
     *of(
         "measurements/importers/tracker/stations.py", *tests("measurements/importers/campaign", "several_files"),

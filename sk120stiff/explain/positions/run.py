@@ -21,7 +21,7 @@ from sk120stiff.explain.positions.advise.other_poses import (
     next_poses,
 )
 from sk120stiff.explain.positions.answer.balancer import balancing, or_balancer, shared
-from sk120stiff.explain.positions.answer.explained import EVEN, Explained, Named
+from sk120stiff.explain.positions.answer.explained import Explained, Named
 from sk120stiff.explain.positions.judge.accounts import (
     families_of,
     held_out_rms,
@@ -35,6 +35,7 @@ from sk120stiff.explain.positions.judge.accounts import (
 )
 from sk120stiff.explain.positions.judge.changed import changed
 from sk120stiff.explain.positions.judge.fallen import (
+    EVEN,
     TOGETHER,
     borne_out,
     with_one_less,
@@ -364,7 +365,7 @@ def _beside_errors(linear: Linear, seen: Calibration, final: Calibration) -> Lin
     before, after = seen.problem, final.problem
     same = np.array_equal(before.measurements.joints, after.measurements.joints)
     if same and np.array_equal(before.rows, after.rows):  # in units of the noise beside the names
-        there = linear.in_units_of(before.of_channels, after.of_channels)
+        there = linear.whitened(before.of_channels, after.of_channels)
         errors = beside_any(there, after, final.form)
     else:  # other rows are wild beside the names
         ratio = float(np.median(after.of_channels.sigma) / np.median(before.of_channels.sigma))

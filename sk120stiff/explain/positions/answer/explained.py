@@ -26,7 +26,6 @@ from sk120stiff.model import Share
 if TYPE_CHECKING:
     from sk120stiff.show import Report
 
-EVEN = 0.5  # probability below which a name is not likely by itself
 SURE = 0.95  # probability of a name that is settled
 HARDLY = 0.01  # probability of an alternative below which it has no line of its own
 LEAST = 5e-4  # share of the gap that is nothing

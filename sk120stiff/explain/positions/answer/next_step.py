@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from sk120stiff.explain.findings import likely
 from sk120stiff.explain.positions.answer.balancer import tell_apart
-from sk120stiff.explain.positions.answer.explained import EVEN, SURE
+from sk120stiff.explain.positions.answer.explained import SURE
+from sk120stiff.explain.positions.judge.fallen import EVEN
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from sk120stiff.explain.positions.select.choose import Chosen, confirmed, gain
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify.positions.calibrate import Calibration
 
-EVEN = 0.5  # probability below which a name falls
+EVEN = 0.5  # probability below which a name is not likely by itself, and falls beside others
 TOGETHER = (
     0.8  # of all of them as one, from which on none falls where each may stand for the others
 )

@@ -170,12 +170,8 @@ class Linear:
 
     def whitened(self, before: PoseWhitening, after: PoseWhitening) -> Linear:
         """The same numbers with other uncertainties."""
-        return self if before.common == after.common else self.in_units_of(before, after)
-
-    def in_units_of(self, before: PoseWhitening, after: PoseWhitening) -> Linear:
-        """The same numbers in units of another noise; columns of the base are no longer one long
-        and may hold each other.
-        """
+        if before is after:
+            return self
         residual, base, columns = (
             after.apply(before.undo(each)) for each in (self.residual, self.base, self.columns)
         )

@@ -12,7 +12,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
-from sk120stiff.identify.positions.checks.parts import by_stations
+from sk120stiff.identify.positions.checks.parts import FAR, by_stations
 from sk120stiff.identify.positions.solve.start import REGISTERED, options_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing.placing import stands_for_all
@@ -23,7 +23,6 @@ from sk120stiff.robot.rotations import rotation_vector
 
 BETTER = 0.2  # of what is left, below which it must fall: no error of a model moves a cloud so
 STEPS = 3  # of Gauss and Newton, because an instrument may misread what it sees from there
-FAR = 8.0  # times the median distance: rows that do not tell where the tracker stands
 ROUNDS = 5  # of leaving such rows out
 FEWEST = 5  # whole positions of a station: three would fit in any case, nearly
 OF_MARKER = 8  # the same where the marker's place is sought as well
