@@ -42,7 +42,8 @@ def validated(
 
     Args:
         where: The file, or what tells the place of a key in it.
-        like: Examples of what can be written, by the key's own name or that of its section.
+        like: Examples of what can be written, by the key with its section (a.b), where its own name
+            stands for another thing elsewhere, by its own name, or by that of its section.
 
     Raises:
         InputError: An unknown or missing key, or a value that does not fit.
@@ -69,7 +70,7 @@ def _slip(
     known = _keys(model, path[:-1])
     section = f" of {'.'.join(path[:-1])}" if path[1:] else ""
     remedy = f"Keys{section} are: {', '.join(known)}."
-    example = like.get(path[-1]) or like.get(path[0])
+    example = like.get(".".join(path)) or like.get(path[-1]) or like.get(path[0])
     kind = slip["type"]
     if kind == "extra_forbidden":
         what = f"the key {key!r} is not known{meant(path[-1], known)}"

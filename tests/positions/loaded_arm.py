@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from tests.positions.arm import NAMES, Arm, Array, urdf
 
 SPRINGS = np.array([1 / 9e5, 1 / 8e5, 1 / 5e5, 1 / 1e5, 1 / 8e4, 1 / 5e4])  # rad/(N·m)
+ORIGIN = np.zeros(3)
 PULLED = np.array([0.0, 0.0, 0.1])  # m, tool frame: where the load acts
 MARKERS = {
     "A": np.array([0.15, 0.0, 0.1]), "B": np.array([-0.15, 0.12, 0.05]),
@@ -18,10 +19,12 @@ MARKERS = {
 }  # fmt: skip
 
 
-def rests(arm: Arm, a: Array, force: Array, rocking: float = 0.0) -> tuple[Array, Array]:
+def rests(
+    arm: Arm, a: Array, force: Array, rocking: float = 0.0, about: Array = ORIGIN
+) -> tuple[Array, Array]:
     """Origin (N, 3) and axes (N, 3, 3) of the tool under forces (N, 3) [N], base axes.
 
-    The foundation rocks by `rocking` about x and y of the base [rad/(N·m)].
+    The foundation rocks by `rocking` about x and y of the base [rad/(N·m)] through a point.
     """
     own = Arm(**{**vars(arm), "marker": PULLED})
     q, tilt = a, Rotation.identity(len(a))
@@ -29,10 +32,11 @@ def rests(arm: Arm, a: Array, force: Array, rocking: float = 0.0) -> tuple[Array
         pull = tilt.inv().apply(force)
         torque = np.stack([-_slope(own, q, pull, k) for k in range(6)], axis=1)
         q = a + arm.compliance * torque
-        moment = np.cross(tilt.apply(own.pose(q)[0]), force)
+        moment = np.cross(tilt.apply(own.pose(q)[0] - about), force)
         tilt = Rotation.from_rotvec(rocking * moment * [1.0, 1.0, 0.0])
     x, R, _ = own.pose(q)
-    return tilt.apply(x - np.einsum("nij,j->ni", R, PULLED)), tilt.as_matrix() @ R
+    origin = x - np.einsum("nij,j->ni", R, PULLED)
+    return about + tilt.apply(origin - about), tilt.as_matrix() @ R
 
 
 def _slope(arm: Arm, q: Array, pull: Array, k: int) -> Array:
@@ -48,10 +52,15 @@ def _slope(arm: Arm, q: Array, pull: Array, k: int) -> Array:
 
 
 def moved(
-    arm: Arm, a: Array, force: Array, marker: Array, rocking: float = 0.0
+    arm: Arm,
+    a: Array,
+    force: Array,
+    marker: Array,
+    rocking: float = 0.0,
+    about: Array = ORIGIN,
 ) -> tuple[Array, Array]:
     """Displacement (N, 3) of a marker and rotation vector (N, 3) of the tool by the load, base."""
-    (x, R), (x_0, R_0) = (rests(arm, a, f, rocking) for f in (force, 0.0 * force))
+    (x, R), (x_0, R_0) = (rests(arm, a, f, rocking, about) for f in (force, 0.0 * force))
     turn = Rotation.from_matrix(R @ np.swapaxes(R_0, 1, 2)).as_rotvec()
     return x - x_0 + np.einsum("nij,j->ni", R - R_0, marker), turn
 

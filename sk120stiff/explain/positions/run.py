@@ -43,6 +43,7 @@ from sk120stiff.explain.positions.judge.fallen import (
 )
 from sk120stiff.explain.positions.judge.laws import (
     Laws,
+    as_fitted,
     beside_laws,
     by_best_laws,
     laws_at,
@@ -173,13 +174,13 @@ def _explained(
         final = _exactly(base, seen, linear, found, readings, catalogue)
     tell("what is left", 0.85)
     final = with_model_form(final)
-    linear = _beside_errors(_as_fitted(linear, found, final), seen, final)
+    linear = _beside_errors(as_fitted(linear, found.order, seen, final), seen, final)
     whole = linear, found, laws, final
     while lost := with_one_less(linear, found, final):
         found = lost
         laws = {e: own for e, own in laws.items() if e in found.order}
         final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
-        linear = _beside_errors(_as_fitted(linear, found, final), seen, final)
+        linear = _beside_errors(as_fitted(linear, found.order, seen, final), seen, final)
     guess, guessed = None, np.nan
     suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
     if final.form is not None:
@@ -345,17 +346,6 @@ def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> boo
         gain = 2.0 * (again.log_likelihood - before.log_likelihood)
     price = (len(again.x) - len(before.x)) * np.log(numbers)
     return bool(gain - price < -2.0 * threshold(linear))
-
-
-def _as_fitted(linear: Linear, found: Chosen, final: Calibration) -> Linear:
-    """The chosen by the laws that were fitted, whose forms lie between those that were tried."""
-    fitted = {effect.id: effect for effect in final.model.effects}
-    laws = {e: fitted.get(linear.candidates[e].id) for e in found.order}
-    candidates = tuple(
-        law if (law := laws.get(e)) is not None and law.form is not None else each
-        for e, each in enumerate(linear.candidates)
-    )
-    return replace(linear, candidates=candidates)
 
 
 def _beside_errors(linear: Linear, seen: Calibration, final: Calibration) -> Linear:

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.effects.foundation import BaseRocking
 from sk120stiff.explain import Options
 from sk120stiff.explain.positions.answer.explained import Explained
-from sk120stiff.explain.positions.judge.laws import by_best_laws, laws_at
+from sk120stiff.explain.positions.judge.laws import as_fitted, by_best_laws, laws_at
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.explain.positions.select.candidates import linear_at
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
@@ -94,6 +95,33 @@ def test_a_law_that_rows_now_set_aside_made_usual_is_held_against_the_others(
     laws = laws_at(linear, (e,), base)
     assert law in [block[0] for block in laws[e]]
     assert by_best_laws(linear, (e,), laws).candidates[e] in [block[0] for block in laws[e]]
+
+
+def test_a_law_with_more_numbers_than_were_tried_is_judged_by_its_own_columns(
+    tmp_path: Path,
+) -> None:
+    """A base that rocks about a point beside the axis has a cross term that the usual law lacks."""
+    a = poses(40, 5)
+    data = sk.read(write(tmp_path, a, tracked(errors(4).stands(a)[0]), FIT + NOISE))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    readings = data.with_joints(robot.actuated)
+    base = calibrate(Model(robot), readings, geometry=False, waves=False)
+    linear, _ = linear_at(base, Options(), sk.CATALOGUE)
+    e = [effect.id for effect in linear.candidates].index("base_rocking:base")
+    usual = linear.candidates[e]
+    assert isinstance(usual, BaseRocking)
+    law = replace(usual, askew=True, beside=(0.15, -0.1))
+    final = replace(base, model=base.model + law)
+    there = as_fitted(linear, (e,), base, final)
+    assert there.candidates[e] == law and len(there.values((e,), 1.0)) == 3
+    at, size = final.model.values, 1e-9
+    for k, column in enumerate(there.columns[:, there.slices[e]].T):
+        step = np.eye(len(at))[base.model.values.size + k] * size * there.sizes[there.slices[e]][k]
+        problem = replace(base.problem, model=final.model)
+        slope = (problem.channel_gap(at - step)[0] - problem.channel_gap(at + step)[0]) / 2 / size
+        slope = base.problem.of_channels.apply(slope)
+        slope -= linear.base @ (linear.base.T @ slope)
+        np.testing.assert_allclose(column, slope, atol=1e-3 * np.abs(slope).max())
 
 
 def test_waves_are_named_with_their_joint(tmp_path: Path) -> None:

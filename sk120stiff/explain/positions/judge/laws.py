@@ -53,7 +53,7 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
         seen: The calibration about which they were.
     """
     problem, model = seen.problem, seen.model
-    told, white = options_of(problem.measurements), problem.of_channels.apply
+    told = options_of(problem.measurements)
     laws: dict[int, tuple[Effect, ...]] = {}
     for e in chosen:
         own = linear.candidates[e]
@@ -71,16 +71,45 @@ def laws_at(linear: Linear, chosen: tuple[int, ...], seen: Calibration) -> Laws:
         model,
         [law for e, own in laws.items() for law in own if law != linear.candidates[e]],
     )
-    off = frames_off(model)
 
     def block(e: int, law: Effect) -> Block:
         if law == linear.candidates[e]:
             part = linear.slices[e]
             return law, linear.sizes[part], linear.columns[:, part]
-        sizes = usual_sizes(law, off)
-        return law, sizes, beside(linear.base, white(found[law] * sizes))
+        return _block(linear, seen, law, found[law])
 
     return {e: [block(e, law) for law in own] for e, own in laws.items()}
+
+
+def as_fitted(
+    linear: Linear, chosen: tuple[int, ...], seen: Calibration, final: Calibration
+) -> Linear:
+    """The chosen by the laws that were fitted, whose forms lie between those that were tried.
+
+    Args:
+        linear: The positions linearised.
+        chosen: Candidates.
+        seen: The calibration about which they were.
+        final: That with the chosen, fitted.
+    """
+    fitted = {effect.id: effect for effect in final.model.effects}
+    laws = {e: fitted.get(linear.candidates[e].id) for e in chosen}
+    other = {
+        e: law
+        for e, law in laws.items()
+        if law is not None and law.form is not None and law != linear.candidates[e]
+    }
+    found = slopes(seen.problem, seen.model, list(other.values()))
+    for e, law in other.items():
+        linear = linear.by_law(e, *_block(linear, seen, law, found[law]))
+    return linear
+
+
+def _block(linear: Linear, seen: Calibration, law: Effect, slope: Array) -> Block:
+    """A law about a calibration, from the derivatives (M, p) of the readings by its parameters."""
+    sizes = usual_sizes(law, frames_off(seen.model))
+    white = seen.problem.of_channels.apply
+    return law, sizes, beside(linear.base, white(slope * sizes))
 
 
 def by_best_laws(linear: Linear, chosen: tuple[int, ...], laws: Laws) -> Linear:
