@@ -15,7 +15,7 @@ from sk120stiff.identify.positions.words import findings
 from sk120stiff.measurements import write_measurements
 from sk120stiff.model import Model, read_model, write_model
 from sk120stiff.model.predicted import prediction_table
-from tests.positions.arm import NAMES, TURN, Array, errors, poses, tracked, write
+from tests.positions.arm import NAMES, TURN, Arm, Array, errors, poses, tracked, write
 
 SIGMA, ANGLE = 2e-5, 3e-5
 KNOWN = "position: {frame: unknown}\npoint: {xyz: [50, -80, 120], unit: mm}\n"
@@ -130,3 +130,22 @@ def test_what_a_file_says_of_axes_is_written_and_read(tmp_path: Path) -> None:
     told = np.array([table[f"predicted_r{axis}[rad]"] for axis in "xyz"], dtype=float).T
     read = Rotation.from_rotvec(gap) * Rotation.from_rotvec(told)
     assert np.allclose(read.as_matrix(), data.absolute.channels.rotation, atol=1e-9)
+
+
+def test_rotations_of_an_arm_whose_wrist_was_never_calibrated_are_its_own(tmp_path: Path) -> None:
+    """Two zeros of the wrist are off by 4 degrees: nobody's slip, and no reason to stop."""
+    rng = np.random.default_rng(7)
+    off = np.radians([0.0, 0.0, 0.0, 4.0, -4.0, 0.0])
+    x, axes = Arm(compliance=errors(1).compliance).stands(A + off)
+    read = TURN * Rotation.from_matrix(axes) * SITS
+    read = Rotation.from_rotvec(ANGLE * rng.normal(size=x.shape)) * read
+    cells = [",".join(f"{v:.12g}" for v in vector) for vector in read.as_rotvec()]
+    x = tracked(x) + SIGMA * rng.normal(size=x.shape)
+    path = write(tmp_path, A, x, ROUGH + NOISE, more=",rx[rad],ry[rad],rz[rad]", cells=cells)
+    robot = sk.load_robot(path.with_name("six.urdf"), base="base", tool="tool")
+    answer = explain_positions(sk.Model(robot), sk.read(path))
+    assert answer.chance is not None and answer.chance > 1e-3
+    assert {item.effect.name for item in answer.findings} <= {
+        "joint_frame", "joint_offset", "joint_springs",
+    }  # fmt: skip
+    assert answer.steps[0].fit_rms > 100.0 * answer.steps[-1].fit_rms

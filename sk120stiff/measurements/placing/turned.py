@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -12,7 +13,8 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.robot import Robot
 
-FITS = np.radians(3.0)  # median; no arm's tool is turned by more
+FITS = np.radians(3.0)  # median, up to which nothing is looked for that would explain it
+ASKEW = np.radians(10.0)  # median; no arm's tool is turned by more, be its zeros ever so far off
 BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 MOUNTED = np.radians(0.5)  # by which all are turned alike: more than joints are off
 COMPUTED = np.radians(0.002)  # no arm is built, and no target reads, as well as that
@@ -50,9 +52,8 @@ def targets_on_tool(
     sits = mounting(tool, read, group, len(labels))
     beside = _off(tool * sits[group], read)
     if said.fit_axes:
-        if beside < FITS:
-            return sits.as_rotvec(), ()
-        raise _refusal(beside, _slips(tool, read, group, len(labels)), readings)
+        _refuse(beside, _slips(tool, read, group, len(labels)), readings)
+        return sits.as_rotvec(), ()
     left = _off(tool, read)
     alike = float(sits.magnitude().max())
     if left < FITS:
@@ -62,10 +63,9 @@ def targets_on_tool(
             "that. Write 'rotation: {axes: target}' into the YAML file: the fit then finds it."
         )
         return None, (told,) if alike > MOUNTED and beside < BETTER * left else ()
-    slips = list(_slips(tool, read))
-    if beside < FITS:
-        slips.append((beside, *_own_axes(alike)))
-    raise _refusal(left, slips, readings)
+    slips = chain(_slips(tool, read), [(beside, *_own_axes(alike))] if beside < FITS else [])
+    _refuse(left, slips, readings)
+    return None, ()
 
 
 def mounting(tool: Rotation, read: Rotation, group: Index, count: int) -> Rotation:
@@ -82,11 +82,16 @@ def mounting(tool: Rotation, read: Rotation, group: Index, count: int) -> Rotati
     return Rotation.concatenate(out)
 
 
-def _refusal(
-    left: float, slips: Iterator[tuple[float, str, str]] | list[tuple[float, str, str]],
-    readings: Measurements,
-) -> InputError:  # fmt: skip
-    """Rotations that are not this robot's, with the slip that explains them best."""
+def _refuse(
+    left: float, slips: Iterable[tuple[float, str, str]], readings: Measurements
+) -> None:
+    """Stop where rotations are not this robot's: a slip explains them, or no arm is so far off.
+
+    Raises:
+        InputError: They are not; the message says what would explain them.
+    """
+    if left < FITS:
+        return
     told = (
         "the tool's rotations are not those of the placed robot: they are "
         f"{np.degrees(left):.3g} deg off (median)"
@@ -94,8 +99,10 @@ def _refusal(
     where = readings.place
     best = min(slips, key=lambda item: item[0])
     if best[0] < min(BETTER * left, FITS):
-        return InputError(f"{told}. {best[1]}", where=where, remedy=best[2])
-    return InputError(
+        raise InputError(f"{told}. {best[1]}", where=where, remedy=best[2])
+    if left < ASKEW:
+        return
+    raise InputError(
         told,
         where=where,
         remedy="Give the axes of the tool frame in those of the instrument, as a rotation vector "
