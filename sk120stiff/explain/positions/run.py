@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -28,7 +28,6 @@ from sk120stiff.explain.positions.judge.accounts import (
     heldout_on,
     nearer_as_a_whole,
     numbers_told,
-    rms,
     springs_of,
     steps_of,
     suspects_of,
@@ -38,20 +37,18 @@ from sk120stiff.explain.positions.judge.fallen import (
     EVEN,
     TOGETHER,
     borne_out,
-    with_one_less,
     with_own_values,
 )
 from sk120stiff.explain.positions.judge.laws import (
     Laws,
-    as_fitted,
     beside_laws,
     by_best_laws,
     laws_at,
     with_fewer,
 )
-from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
+from sk120stiff.explain.positions.judge.posterior import Posterior, of_all
 from sk120stiff.explain.positions.judge.remainder import where_it_lives
-from sk120stiff.explain.positions.judge.smooth_error import beside_any
+from sk120stiff.explain.positions.judge.settled import Campaign, left, less_likely, picked
 from sk120stiff.explain.positions.select.candidates import linear_at
 from sk120stiff.explain.positions.select.choose import (
     Chosen,
@@ -59,17 +56,14 @@ from sk120stiff.explain.positions.select.choose import (
     choose,
     gain,
     nothing_named,
-    threshold,
 )
 from sk120stiff.explain.positions.select.linear import Linear, everything
-from sk120stiff.explain.select.form import beside_form, forms, with_best_form
+from sk120stiff.explain.select.form import beside_form, forms
 from sk120stiff.identify import refuse_for_positions, refuse_plan
 from sk120stiff.identify.positions.calibrate import (
     Calibration,
     calibrate,
     refined,
-    with_model_form,
-    with_values_of,
 )
 from sk120stiff.identify.positions.checks.drift import creeping
 from sk120stiff.identify.positions.checks.force_axes import refuse_other_forces
@@ -88,7 +82,6 @@ from sk120stiff.model import Model
 
 FEWEST = 10  # poses below which no other pose can confirm a name
 FEWEST_LOADED = 6  # the same where each is read by what loads do, several numbers to a pose
-MORE = 1.2  # times as much left as to first order: the fit went another way
 ROUNDS = 3  # of choosing anew about what was fitted
 
 
@@ -157,61 +150,57 @@ def _explained(
     beside = everything(linear)
     pushed = refuse_pushed(seen, readings, *beside) or refuse_remounted(seen, readings, *beside)
     tell("fitting exactly", 0.5)
-    final = _exactly(base, seen, linear, found, readings, catalogue)
+    final = Campaign(base, seen, readings, catalogue).exactly(linear, found)
     for _ in range(ROUNDS):
         about = _selected(base, final, options, catalogue)
-        if set(_picked(*about[:2])) == set(_picked(linear, found)):
+        if set(picked(*about[:2])) == set(picked(linear, found)):
             seen, (linear, found, laws, hidden) = final, about
             break
-        again = _exactly(base, final, *about[:2], readings, catalogue)
-        if _less_likely(again, final, linear):
+        again = Campaign(base, final, readings, catalogue).exactly(*about[:2])
+        if less_likely(again, final, linear):
             break
         seen, (linear, found, laws, hidden), final = final, about, again
+    campaign = Campaign(base, seen, readings, catalogue)
     if (apart := with_own_values(linear, found, final)) != found:
-        found, final = apart, _exactly(base, seen, linear, apart, readings, catalogue)
-    if found.order and _left(final) > _left(base):  # first order led astray
+        found, final = apart, campaign.exactly(linear, apart)
+    if found.order and left(final) > left(base):  # first order led astray
         found, laws = nothing_named(linear, found), {}
-        final = _exactly(base, seen, linear, found, readings, catalogue)
+        final = campaign.exactly(linear, found)
     tell("what is left", 0.85)
-    final = with_model_form(final)
-    linear = _beside_errors(as_fitted(linear, found.order, seen, final), seen, final)
-    whole = linear, found, laws, final
-    while lost := with_one_less(linear, found, final):
-        found = lost
-        laws = {e: own for e, own in laws.items() if e in found.order}
-        final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
-        linear = _beside_errors(as_fitted(linear, found.order, seen, final), seen, final)
+    first = campaign.standing(linear, found, laws, final)
+    now = campaign.settled(first)
     guess, guessed = None, np.nan
     suspects, jointly = tuple[Contender, ...](), tuple[str, ...]()
-    if final.form is not None:
-        likely = [alternatives(linear, found.order, e)[1] for e in found.order]
-        alone = len(likely) == 1 and not borne_out(linear, found.order)
+    if now.final.form is not None:
+        likely = [probability for _, probability in now.posterior.names.values()]
+        alone = len(likely) == 1 and not borne_out(now.linear, now.found.order)
         if likely and (alone or max(likely) < EVEN):
-            if alone or (together := of_all(linear, found.order)) < TOGETHER:
-                there, names, by_laws, fitted = whole  # with all that fell
-                inside = numbers_told(seen, fitted, readings)
-                guess = beside_laws(fitted, there, names.order, by_laws)
+            if alone or (together := of_all(now.linear, now.found.order)) < TOGETHER:
+                inside = numbers_told(seen, first.final, readings)  # with all that fell
+                guess = beside_laws(first.final, first.posterior, first.laws)
                 guess = beside_parts(guess, catalogue, options.exclude)
-                suspects = suspects_of(there, names, seen, inside)
-                guessed = held_out_rms(there, names.order, seen, inside)
-                found, laws = nothing_named(linear, found), {}
-                final = with_model_form(_exactly(base, seen, linear, found, readings, catalogue))
-                linear = _beside_errors(linear, seen, final)
+                suspects = suspects_of(first.linear, first.found, seen, inside)
+                guessed = held_out_rms(first.linear, first.found.order, seen, inside)
+                nothing = nothing_named(now.linear, now.found)
+                bare = campaign.exactly(now.linear, nothing)
+                now = campaign.standing(now.linear, nothing, {}, bare)
             else:
                 jointly = (
                     "None of these names is likely by itself, since each may stand for the others; "
                     "that what they take off together is theirs, and no part of an unknown cause, "
                     f"has P = {together:.2f}.",
                 )
-    final = beside_parts(beside_laws(final, linear, found.order, laws), catalogue, options.exclude)
+    linear, found = now.linear, now.found
+    final = beside_laws(now.final, now.posterior, now.laws)
+    final = beside_parts(final, catalogue, options.exclude)
     final = replace(
-        beside_form(final, _picked(linear, found)),
+        beside_form(final, now.picked),
         notes=(
             *hangs,
             *pushed,
             *jointly,
             *final.notes,
-            *forms(final, _picked(linear, found)),
+            *forms(final, now.picked),
             *pounds(final),
             *([] if pushed else creeping(final, readings)),
             *balancing(final),
@@ -219,7 +208,7 @@ def _explained(
         ),
     )
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
-    named, following = _named(linear, found, final, options)
+    named, following = _named(now.posterior, final, options)
     gap = linear.gap(found.order, noise, held_out=True)
     chance = chance_of_noise(final)
     lacking = chance is not None and chance < LEVEL
@@ -252,7 +241,7 @@ def _explained(
         guess_heldout=guessed,
         where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
-        probabilities=shared(probabilities(linear, found), named, final),
+        probabilities=shared(probabilities(now.posterior, found), named, final),
         following=following,
         readings=readings,
         heldout=None if holdout is None else heldout_on(final, base, holdout),
@@ -304,86 +293,19 @@ def _refuse_few_poses(readings: Measurements) -> None:
     )
 
 
-def _exactly(
-    base: Calibration,
-    seen: Calibration,
-    linear: Linear,
-    found: Chosen,
-    readings: Measurements,
-    catalogue: Catalogue,
-) -> Calibration:
-    """The chosen fitted at equilibrium, from where they were seen.
-
-    A load on springs is a product of two unknowns, and the way to it is curved: where more is left
-    than to first order, the values found so are another start.
-    """
-    picked = _picked(linear, found)
-
-    def again_with(model: Model, effects: Sequence[Effect], _before: Calibration) -> Calibration:
-        return refined(base, effects, readings, model, catalogue)
-
-    final = refined(base, picked, readings, seen.model, catalogue)
-    noise = linear.noise(found.order)
-    foretold = linear.gap(found.order, noise, held_out=False)
-    foretold = seen.problem.of_channels.undo(foretold)
-    if _left(final) <= MORE * rms(foretold):
-        return with_best_form(picked, final, again_with)[1]
-    known = linear.values(found.order, noise)
-    wide = final.model
-    values = [known.get(p.name, p.internal) for p in with_values_of(wide, seen.model).parameters]
-    again = refined(base, picked, readings, wide.with_values(np.array(values)), catalogue)
-    return with_best_form(picked, min(final, again, key=_left), again_with)[1]
-
-
-def _less_likely(again: Calibration, before: Calibration, linear: Linear) -> bool:
-    """Does a set that was chosen anew say clearly less of the readings (BIC)?
-
-    Clearly is by as much as a name must bring. Sets that say nearly the same take turns.
-    """
-    numbers = len(before.residual)
-    gain = numbers * np.log(_left(before) ** 2 / _left(again) ** 2)
-    if before.problem.common or again.problem.common:
-        gain = 2.0 * (again.log_likelihood - before.log_likelihood)
-    price = (len(again.x) - len(before.x)) * np.log(numbers)
-    return bool(gain - price < -2.0 * threshold(linear))
-
-
-def _beside_errors(linear: Linear, seen: Calibration, final: Calibration) -> Linear:
-    """The linear problem as names are judged by it: beside errors like what the fit leaves."""
-    if final.form is None:
-        return replace(linear, independent=None, errors=None)
-    before, after = seen.problem, final.problem
-    same = np.array_equal(before.measurements.joints, after.measurements.joints)
-    if same and np.array_equal(before.rows, after.rows):  # in units of the noise beside the names
-        there = linear.whitened(before.of_channels, after.of_channels)
-        errors = beside_any(there, after, final.form)
-    else:  # other rows are wild beside the names
-        ratio = float(np.median(after.of_channels.sigma) / np.median(before.of_channels.sigma))
-        errors = beside_any(linear, before, final.form.in_units(ratio))
-    return replace(linear, independent=final.form.independent, errors=errors)
-
-
-def _left(found: Calibration) -> float:
-    return rms(found.problem.of_channels.undo(found.residual))
-
-
-def _picked(linear: Linear, found: Chosen) -> list[Effect]:
-    return [linear.candidates[e] for e in found.order]
-
-
 def _named(
-    linear: Linear, found: Chosen, final: Calibration, options: Options
+    posterior: Posterior, final: Calibration, options: Options
 ) -> tuple[tuple[Named, ...], NextPoses | None]:
     """Every name with what explains as much, and the poses that would tell them apart."""
+    linear, rivals = posterior.linear, posterior.names
     candidates = linear.candidates
-    rivals = {e: alternatives(linear, found.order, e) for e in found.order}
     there = elsewhere(final, options) if any(own for own, _ in rivals.values()) else None
     named, pairs = [], []
     for e, (own, probability) in rivals.items():
         others = [candidates[c] for c in own]
         exact = never_told(final, there, candidates[e], others) if there and others else ()
         ids = tuple(other.id for other in others)
-        item = Named(candidates[e], ids, exact, probability, gain(linear, found.order, e))
+        item = Named(candidates[e], ids, exact, probability, gain(linear, posterior.chosen, e))
         named.append(or_balancer(item, final))
         pairs += [(candidates[e], other) for other in others if other.id not in exact][:1]
     following = None if there is None else next_poses(final, there, pairs)

@@ -82,9 +82,7 @@ def mounting(tool: Rotation, read: Rotation, group: Index, count: int) -> Rotati
     return Rotation.concatenate(out)
 
 
-def _refuse(
-    left: float, slips: Iterable[tuple[float, str, str]], readings: Measurements
-) -> None:
+def _refuse(left: float, slips: Iterable[tuple[float, str, str]], readings: Measurements) -> None:
     """Stop where rotations are not this robot's: a slip explains them, or no arm is so far off.
 
     Raises:

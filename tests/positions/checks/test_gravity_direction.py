@@ -129,7 +129,7 @@ def test_a_balancer_that_nothing_else_tells_from_a_ceiling(
     by_axis = np.zeros((3, 60, 2))
     by_axis[2] = np.random.default_rng(5).normal(size=(60, 2))
     gap = by_axis[2] @ [3.0, -other] + 1e-3 * np.ones(60)
-    sag = gravity_direction._Sag(by_axis, np.zeros((60, 2)), gap, 58)
+    sag = gravity_direction._Sag(by_axis, np.zeros((60, 2)), gap, 58, np.full(2, np.inf))
     monkeypatch.setattr(gravity_direction._Sag, "of", classmethod(lambda _cls, _found: sag))
     robot = SimpleNamespace(gravity_in_base=np.array([0.0, 0.0, -9.81]))
     problem = SimpleNamespace(channels=SimpleNamespace(present=("position",)))

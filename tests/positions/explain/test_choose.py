@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import sk120stiff as sk
 from sk120stiff.arrays import Array
-from sk120stiff.explain.positions.judge.posterior import alternatives
+from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.select.choose import Chosen, by_likeliest, gain
 from sk120stiff.explain.positions.select.linear import Linear
 
@@ -44,7 +45,8 @@ def test_a_name_that_many_readings_show_is_sure_though_another_spring_may_be_the
     linear = seen(columns, 0.4 * columns[:, 0] + rng.normal(size=6000), stated=True)
     assert linear.noise(()) > 1.1
     assert linear.score((0,), 1.0) - linear.score((), linear.noise(())) > 300.0
-    assert alternatives(linear, (0,), 0) == ((), 1.0)
+    rivals, probability = Posterior(linear, (0,)).names[0]
+    assert rivals == () and probability == pytest.approx(1.0)
 
 
 def test_a_name_gives_way_to_one_that_is_clearly_likelier_and_to_no_equal() -> None:

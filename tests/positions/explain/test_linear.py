@@ -1,6 +1,7 @@
 """Evidence, held-out gaps and confirmation of causes of positions, on made-up columns."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -8,8 +9,8 @@ from scipy.optimize import lsq_linear
 from scipy.stats import multivariate_normal
 
 from sk120stiff.effects import effect
-from sk120stiff.explain.positions.judge import posterior
-from sk120stiff.explain.positions.judge.posterior import alternatives, standing
+from sk120stiff.explain.positions.judge import sets
+from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.select.choose import (
     BEYOND_DOUBT,
     CLEAR,
@@ -160,11 +161,12 @@ def test_another_frame_that_shows_alike_stands_beside_a_frame():
     alike = made.columns.copy()
     alike[:, 2] = alike[:, 0] + 0.02 * alike[:, 2]
     made = replace(made, columns=alike, candidates=(*frames, made.candidates[3]))
-    rivals, probability = alternatives(made, (0, 1), 0)
+    found = Posterior(made, (0, 1))
+    rivals, probability = found.names[0]
     assert rivals == (2,) and probability > 0.99
-    told = standing(made, (0, 1), 0)
+    told = found.standing(0)
     assert told[frames[0].id] == pytest.approx(told[frames[2].id], abs=0.3)
-    assert alternatives(made, (0, 1), 1)[0] == ()
+    assert found.names[1][0] == ()
 
 
 def test_a_cause_joins_by_more_evidence_the_more_were_looked_at():
@@ -177,15 +179,18 @@ def test_a_cause_joins_by_more_evidence_the_more_were_looked_at():
         assert bool(_next(made, (), set(), at_once=False)) is bool(brought >= bar)
 
 
-def test_a_name_stands_against_chance_in_the_place_of_all_that_were_looked_at():
-    """Four candidates, one of them named, no other explains as much: odds of four to nothing."""
+def test_a_name_is_as_probable_as_the_sets_that_hold_it():
+    """All sixteen sets of four candidates, each name at odds of one to four before it is read."""
     made = linear(0.8)
-    rivals, probability = alternatives(made, (0,), 0)
-    assert rivals == ()
     noise = made.noise((0,))
-    odds = np.exp(made.score((0,), noise) - made.score((), noise)) / 4.0
-    assert 1.0 < odds < 1e4
-    assert probability == pytest.approx(odds / (1.0 + odds))
+    every = [each for k in range(5) for each in combinations(range(4), k)]
+    weight = np.array([made.score(each, noise) - len(each) * np.log(4.0) for each in every])
+    weight = np.exp(weight - weight.max())
+    holds = np.array([0 in each for each in every])
+    meant = float(weight[holds].sum() / weight.sum())
+    assert 0.9 < meant < 0.999
+    rivals, probability = Posterior(made, (0,)).names[0]
+    assert rivals == () and probability == pytest.approx(meant, rel=1e-3)
 
 
 def test_geometry_is_drawn_to_where_its_prior_stands():
@@ -211,8 +216,9 @@ def test_a_rival_that_poses_left_out_refute_is_less_likely_than_the_name_that_th
     made = replace(made, columns=columns)
     noise = made.noise((0,))
     assert made.score((1,), noise) > made.score((0,), noise)
-    monkeypatch.setattr(posterior, "confirmed", lambda gained, made: borne_out)
-    own, rival = (standing(made, (0,), 0)[made.candidates[e].id] for e in (0, 1))
+    monkeypatch.setattr(sets, "confirmed", lambda gained, made: borne_out)
+    told = Posterior(made, (0,)).standing(0)
+    own, rival = (told[made.candidates[e].id] for e in (0, 1))
     assert (rival > own) == borne_out
     if not borne_out:
-        assert rival == pytest.approx(FALLEN * own)
+        assert 0.9 * FALLEN * own < rival <= FALLEN * own

@@ -13,6 +13,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.explain.positions import run
 from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.next_step import headline
+from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.placing.placing import place
@@ -66,7 +67,7 @@ def test_they_are_named_beside_an_error_of_the_model(tmp_path: Path) -> None:
 def test_names_that_stand_for_one_another_are_told_where_all_of_them_are_likely(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, together: float, verdict: str
 ) -> None:
-    monkeypatch.setattr(run, "alternatives", lambda *_: ((), 0.3))
+    monkeypatch.setattr(Posterior, "_of", lambda *_: ((), 0.3))
     monkeypatch.setattr(run, "of_all", lambda *_: together)
     data = smoothly_off(readings(tmp_path, 0.3 * OFF))
     answer = explain_positions(sk.Model(sk.load_robot(data.robot, base="base", tool="tool")), data)

@@ -14,7 +14,7 @@ from scipy.stats import multivariate_normal
 
 import sk120stiff as sk
 from sk120stiff.explain.positions.judge.fallen import with_one_less
-from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
+from sk120stiff.explain.positions.judge.posterior import Posterior, of_all
 from sk120stiff.explain.positions.judge.smooth_error import SmoothError, beside_any, of_errors
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.explain.positions.select.choose import Chosen
@@ -77,10 +77,14 @@ def test_a_name_that_is_smooth_itself_is_less_likely_beside_a_smooth_error() -> 
         each.score((0, 1)) - each.score((1,)) for each in (errors(made, (0.0,)), beside.errors)
     ]
     assert gained[1] < 0.5 * gained[0]
-    assert alternatives(beside, (0, 1), 1)[1] > 0.99
+    assert Posterior(beside, (0, 1)).names[1][1] > 0.99
     empty = replace(made, residual=0.0 * made.residual)
     empty = replace(empty, errors=errors(empty, (0.0, 1.0)))
     assert of_all(beside, (0, 1)) > 0.99 > 0.5 > of_all(empty, (0, 1))
+
+
+def judged(made: Linear, found: Chosen) -> Posterior:
+    return Posterior(made, found.order)
 
 
 def test_names_fall_one_at_a_time_the_weakest_first(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -88,7 +92,7 @@ def test_names_fall_one_at_a_time_the_weakest_first(monkeypatch: pytest.MonkeyPa
     made = replace(made, errors=errors(made, (0.0, 1.0)))
     nobody = SimpleNamespace(parameters=(), at_bound=())
     found, order = Chosen((0, 1, 2), {}), []
-    while (less := with_one_less(made, found, nobody)) is not None:  # type: ignore[arg-type]
+    while (less := with_one_less(judged(made, found), found, nobody)) is not None:  # type: ignore[arg-type]
         (gone,) = set(found.order) - set(less.order)
         order.append(gone)
         assert made.candidates[gone].id in less.dropped[gone]
@@ -102,7 +106,7 @@ def test_names_that_stand_for_one_another_stay_together() -> None:
     twin = made.columns[:, 0] + 0.03 * made.columns[:, 3]
     made = replace(made, columns=np.column_stack([made.columns[:, 0], twin, made.columns[:, 2:]]))
     made = replace(made, errors=errors(made, (0.0, 1.0)))
-    likely = [alternatives(made, (0, 1), e)[1] for e in (0, 1)]
+    likely = [probability for _, probability in Posterior(made, (0, 1)).names.values()]
     assert of_all(made, (0, 1)) > max(likely) + 0.1
 
 
@@ -125,7 +129,8 @@ def test_a_name_that_comes_out_as_nothing_falls_though_it_fits_alone() -> None:
     made = linear(3.0, 3.0)
     own = [SimpleNamespace(effect=made.candidates[e], internal=v) for e, v in ((0, 1.0), (1, 0.0))]
     final = SimpleNamespace(parameters=own, at_bound=(False, True))
-    less = with_one_less(made, Chosen((0, 1), {}), final)  # type: ignore[arg-type]
+    found = Chosen((0, 1), {})
+    less = with_one_less(judged(made, found), found, final)  # type: ignore[arg-type]
     assert less is not None and less.order == (0,)
     assert "comes out as nothing" in less.dropped[1]
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from sk120stiff.explain.advise.detectable import length_named
 from sk120stiff.explain.findings import Detectable
-from sk120stiff.explain.positions.judge.posterior import scores_beside, standing
+from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.select.choose import (
     SHARE,
     SURE,
@@ -54,25 +54,23 @@ def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
     return tuple(out)
 
 
-def probabilities(linear: Linear, found: Chosen) -> dict[str, float]:
+def probabilities(posterior: Posterior, found: Chosen) -> dict[str, float]:
     """Name → probability of its being at work, of all above `LEAST`.
 
-    Named causes share theirs with what explains as much; others stand beside the named ones, and
-    are the less likely where poses left out do not confirm them. What fitted and was not confirmed
-    by these is not counted.
+    Named causes share theirs with what explains as much; others stand in the sets that the
+    positions do not refute, and are the less likely where poses left out do not confirm them. What
+    fitted and was not confirmed by these is not counted.
     """
+    linear = posterior.linear
     out: dict[str, float] = {}
     for e in found.order:
-        for name, share in standing(linear, found.order, e).items():
+        for name, share in posterior.standing(e).items():
             out[name] = max(out.get(name, 0.0), share)
-    score = scores_beside(linear, found.order)
-    now = score(found.order)
     for e in linear.may_join(found.order):
         effect = linear.candidates[e]
         if e in found.dropped or effect.id in out:
             continue
-        odds = score((*found.order, e)) - now - entry_price(linear, e)
-        share = float(1.0 / (1.0 + np.exp(-np.clip(odds, -50.0, 50.0))))
+        share = posterior.sets.with_any((e,))
         wider = (*found.order, e)
         if share > UNLIKELY and not confirmed(gain(linear, wider, e), linear):
             share *= FALLEN

@@ -7,7 +7,7 @@ the set that foretells best, too (Barbieri & Berger, Ann. Stat. 32, 2004, p. 870
 
 from __future__ import annotations
 
-from sk120stiff.explain.positions.judge.posterior import alternatives, of_all
+from sk120stiff.explain.positions.judge.posterior import Posterior, of_all
 from sk120stiff.explain.positions.select.choose import Chosen, confirmed, gain
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify.positions.calibrate import Calibration
@@ -32,11 +32,17 @@ def borne_out(linear: Linear, chosen: tuple[int, ...]) -> bool:
     return all(confirmed(gain(linear, chosen, e), linear) for e in chosen)
 
 
-def with_one_less(linear: Linear, found: Chosen, final: Calibration) -> Chosen | None:
+def with_one_less(posterior: Posterior, found: Chosen, final: Calibration) -> Chosen | None:
     """Without the weakest name that does not stand; None: all do.
 
     Of the last one the caller says what becomes of it where it is not likely.
+
+    Args:
+        posterior: The chosen beside what errors of the model may be.
+        found: The chosen, and what fell before.
+        final: The calibration with them.
     """
+    linear = posterior.linear
     if len(found.order) < 2:
         return None
     gains = {e: gain(linear, found.order, e) for e in found.order}
@@ -49,7 +55,7 @@ def with_one_less(linear: Linear, found: Chosen, final: Calibration) -> Chosen |
         return _fallen(linear, found, gone[0], why)
     if linear.errors is None:
         return None
-    likely = {e: alternatives(linear, found.order, e)[1] for e in found.order}
+    likely = {e: probability for e, (_, probability) in posterior.names.items()}
     weakest = min(likely, key=lambda e: likely[e])
     if likely[weakest] >= EVEN:
         return None

@@ -23,7 +23,7 @@ from sk120stiff.explain.judge.selection_uncertainty import (
     REFUTED,
     bent_at_no_load,
 )
-from sk120stiff.explain.positions.judge.posterior import alternatives
+from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.select.candidates import usual_sizes
 from sk120stiff.explain.positions.select.choose import Chosen, usual
 from sk120stiff.explain.positions.select.linear import Linear
@@ -158,19 +158,18 @@ def with_fewer(linear: Linear, found: Chosen, laws: Laws) -> tuple[Linear, Chose
     return linear, found
 
 
-def beside_laws(
-    final: Calibration, linear: Linear, chosen: tuple[int, ...], laws: Laws
-) -> Calibration:
+def beside_laws(final: Calibration, posterior: Posterior, laws: Laws) -> Calibration:
     """The calibration, its errors widened by laws and names that the positions do not refute.
 
     Between two laws that are tried lie others: a taper may be anywhere from the middle towards one
     to the middle towards the next.
     """
+    linear, chosen = posterior.linear, posterior.chosen
     noise, load_cases = linear.noise(chosen), final.problem.load_cases
     here = _at_rest(linear, chosen, noise, load_cases)
     doubt = dict.fromkeys(here, 0.0)
     for other, share in (
-        *((other, 1.0) for other in _others(linear, chosen, laws, noise, load_cases)),
+        *((other, 1.0) for other in _others(posterior, laws, noise, load_cases)),
         *_next_to(linear, chosen, laws, noise, load_cases),
     ):
         there = _at_rest(*other, noise, load_cases)
@@ -237,9 +236,10 @@ def _adjacent(one: Effect, other: Effect, load_cases: LoadCases) -> bool:
 
 
 def _others(
-    linear: Linear, chosen: tuple[int, ...], laws: Laws, noise: float, load_cases: LoadCases
+    posterior: Posterior, laws: Laws, noise: float, load_cases: LoadCases
 ) -> Iterator[tuple[Linear, tuple[int, ...]]]:
     """The same by other laws, the likeliest of those not refuted, and by other names."""
+    linear, chosen = posterior.linear, posterior.chosen
     small, whole = linear.only(chosen), tuple(range(len(chosen)))
     most = small.solved(whole, noise).square + REFUTED * noise
     for e, own in laws.items():
@@ -253,6 +253,6 @@ def _others(
         ]
         near = sorted(tried, key=lambda each: each.solved(whole, noise).square)[:LAWS]
         yield from ((each, whole) for each in near if each.solved(whole, noise).square < most)
-    for e in chosen:
-        for rival in alternatives(linear, chosen, e)[0][:LOOKED_AT]:
+    for e, (rivals, _) in posterior.names.items():
+        for rival in rivals[:LOOKED_AT]:
             yield linear, (*linear.less(chosen, e), rival)

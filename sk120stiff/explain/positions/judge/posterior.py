@@ -2,21 +2,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.special import expit
 
-from sk120stiff.arrays import Array
-from sk120stiff.explain.positions.select.choose import RIVAL, confirmed, frames_of, gain, usual
+from sk120stiff.explain.positions.judge.sets import Sets, not_refuted
+from sk120stiff.explain.positions.select.choose import Chosen, frames_of
 from sk120stiff.explain.positions.select.linear import Linear
-from sk120stiff.explain.priors import FALLEN
+
+CLEARLY = 3.0  # times as probable as the chosen set, for which another takes its place
 
 
-def alternatives(linear: Linear, chosen: tuple[int, ...], e: int) -> tuple[tuple[int, ...], float]:
-    """Candidates that explain as much in the place of one of the chosen, and its probability."""
-    rivals, _, weight = _rivals(linear, chosen, e)
-    return rivals, float(weight[:-1].sum() / weight.sum())
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Chosen names beside all sets that the positions do not refute.
+
+    Attributes:
+        linear: The positions linearised.
+        chosen: The names.
+    """
+
+    linear: Linear
+    chosen: tuple[int, ...]
+
+    @cached_property
+    def sets(self) -> Sets:
+        """The sets, and how probable each is."""
+        return not_refuted(self.linear, self.chosen)
+
+    @cached_property
+    def names(self) -> dict[int, tuple[tuple[int, ...], float]]:
+        """Of each name, what explains as much in its place, and the probability of one of them."""
+        return {e: self._of(e) for e in self.chosen}
+
+    def standing(self, e: int) -> dict[str, float]:
+        """Probability of one of the chosen, and of each that explains as much in its place.
+
+        Together they have that of `names`; among themselves they share it as sets have it.
+        """
+        rivals, probability = self.names[e]
+        own = np.array([self.sets.with_any((c,)) for c in (e, *rivals)])
+        share = probability * own / max(own.sum(), 1e-300)
+        names = [self.linear.candidates[c].id for c in (e, *rivals)]
+        return dict(zip(names, map(float, share), strict=True))
+
+    def likelier(self, tried: Collection[frozenset[int]]) -> Chosen | None:
+        """The likeliest set of no more names, where it is clearly likelier; None: there is none.
+
+        Args:
+            tried: Sets that had their turn.
+        """
+        weights = self.sets.weights
+        here = frozenset(self.chosen)
+        others = [
+            each
+            for each, weight in weights.items()
+            if len(each) <= len(here) and each not in tried and weight > CLEARLY * weights[here]
+        ]
+        if not others:
+            return None
+        best = max(others, key=lambda each: weights[each])
+        kept = tuple(e for e in self.chosen if e in best)
+        instead = " and ".join(self.linear.candidates[e].id for e in sorted(best - here))
+        why = f"fits, but {instead or 'all without it'} is likelier in its place."
+        gone = {e: f"{self.linear.candidates[e].id} {why}" for e in here - best}
+        return Chosen((*kept, *sorted(best - here)), gone)
+
+    def _of(self, e: int) -> tuple[tuple[int, ...], float]:
+        rivals = self.sets.in_its_place(e)
+        narrow = self.sets.with_any((e, *rivals))
+        return rivals, _beside_what_every_arm_has(self.linear, self.chosen, (e, *rivals), narrow)
 
 
 def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:
@@ -30,74 +88,8 @@ def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:
     return float(expit(odds - np.log(len(linear.candidates) + 1.0)))
 
 
-def standing(linear: Linear, chosen: tuple[int, ...], e: int) -> dict[str, float]:
-    """Probability of one of the chosen, and of each that explains as much in its place.
-
-    Together they have that of `alternatives`; among themselves they share it by their usual odds.
-    """
-    rivals, prior, weight = _rivals(linear, chosen, e)
-    own = weight[:-1] * np.exp(prior)
-    share = weight[:-1].sum() / weight.sum() * own / own.sum()
-    names = [linear.candidates[c].id for c in (e, *rivals)]
-    return dict(zip(names, map(float, share), strict=True))
-
-
-def _rivals(
-    linear: Linear, chosen: tuple[int, ...], e: int
-) -> tuple[tuple[int, ...], list[float], Array]:
-    """Rivals, their usual odds with those of the chosen one first, and weights, last of nothing.
-
-    Evidence beyond that of the chosen one, which poses left out bear out, is no evidence where they
-    do not: few readings far from all others make as much.
-    """
-    rest = linear.less(chosen, e)
-    score = scores_beside(linear, chosen, rest)
-    own, nothing = score(chosen), score(rest)
-    frames = set(frames_of(linear))
-    alone = e in frames and frames & set(rest)  # no frame is exact where others are off
-    others = {
-        c: score((*rest, c))
-        for c in linear.may_join(rest)
-        if c not in chosen and (not alone or c in frames)
-    }
-    rivals = tuple(
-        c
-        for c, there in others.items()
-        if there + usual(linear.candidates[c]) > own + usual(linear.candidates[e]) - RIVAL
-        and there > nothing
-    )
-    most = own + float(np.log(FALLEN))
-    for c in rivals:
-        if others[c] > most and not confirmed(gain(linear, (*rest, c), c), linear):
-            others[c] = most
-    scores = np.array([own, *(others[c] for c in rivals), nothing + np.log(len(others) + 1.0)])
-    prior = [usual(linear.candidates[c]) for c in (e, *rivals)]
-    weight = np.exp(scores - scores.max())
-    narrow = float(weight[:-1].sum() / weight.sum())
-    sure = _beside_what_every_arm_has(linear, chosen, (e, *rivals), narrow, len(others))
-    doubt = (1.0 - sure) / max(sure, 1e-300)
-    weight[-1] = doubt * weight[:-1].sum()
-    return rivals, prior, weight
-
-
-def scores_beside(
-    linear: Linear, chosen: tuple[int, ...], *others: tuple[int, ...]
-) -> Callable[[tuple[int, ...]], float]:
-    """The evidence of sets beside what is left of the chosen, or beside errors that may be there.
-
-    Args:
-        linear: The positions linearised.
-        chosen: A set.
-        others: Sets like it, that have their say in which errors may be there.
-    """
-    if linear.errors is not None:
-        return linear.errors.likeliest((chosen, *others)).score
-    noise = linear.noise(chosen)
-    return lambda each: linear.score(each, noise)
-
-
 def _beside_what_every_arm_has(
-    linear: Linear, chosen: tuple[int, ...], own: tuple[int, ...], narrow: float, others: int
+    linear: Linear, chosen: tuple[int, ...], own: tuple[int, ...], narrow: float
 ) -> float:
     """Probability of a name, averaged over the chosen model and that with all frames and springs.
 
@@ -109,7 +101,6 @@ def _beside_what_every_arm_has(
         chosen: The causes of the answer.
         own: The name, and what explains as much in its place.
         narrow: Its probability where nothing else is at work.
-        others: How many names were looked at in its place.
     """
     springs = (c for c, effect in enumerate(linear.candidates) if effect.joint_spring)
     usual_ones = [c for c in (*frames_of(linear), *springs) if c not in (*chosen, *own)]
@@ -122,6 +113,7 @@ def _beside_what_every_arm_has(
         scores = [linear.score(each, linear.noise(each)) for each in sets]
     else:
         scores = [linear.errors.score(each) for each in sets]
-    taken = 1.0 / (1.0 + np.exp(np.clip(scores[2] + np.log(others + 1.0) - scores[1], -50, 50)))
-    share = 1.0 / (1.0 + np.exp(np.clip(scores[0] - scores[1], -50.0, 50.0)))
-    return float((1.0 - share) * narrow + share * min(taken, narrow))
+    others = len(linear.candidates) - len(chosen)
+    taken = float(expit(scores[1] - scores[2] - np.log(others + 1.0)))
+    share = float(expit(scores[1] - scores[0]))
+    return (1.0 - share) * narrow + share * min(taken, narrow)

@@ -51,6 +51,12 @@ class SmoothError:
         scores = [self._one(k, chosen) for k in self.at]
         return float(logsumexp(scores) - np.log(len(scores)))
 
+    def joined(self, chosen: tuple[int, ...]) -> Array:
+        """(K,) the same with one more candidate each; see `Linear.joined`."""
+        each = (self.each[k] for k in self.at)
+        scores = [problem.joined(chosen, 1.0) - volume for problem, volume in each]
+        return np.asarray(logsumexp(scores, axis=0) - np.log(len(scores)))
+
     def likeliest(self, sets: Sequence[tuple[int, ...]]) -> SmoothError:
         """The errors alone that are likeliest beside any of these sets."""
         kept = set[int]()

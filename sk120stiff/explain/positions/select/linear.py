@@ -30,6 +30,9 @@ class BesideErrors(Protocol):
     def score(self, chosen: tuple[int, ...], /) -> float:
         """Logarithm of the evidence, up to a constant of all models."""
 
+    def joined(self, chosen: tuple[int, ...], /) -> Array:
+        """(K,) the same with one more candidate each; see `Linear.joined`."""
+
     def likeliest(self, sets: Sequence[tuple[int, ...]], /) -> BesideErrors:
         """Beside those errors alone that are likeliest for these sets."""
 
@@ -240,10 +243,47 @@ class Linear:
         compared each at its own noise.
         """
         found = self.solved(chosen, noise)
-        count = self.count
+        return float(self._evidence(found.square, found.volume, noise))
+
+    def _evidence(
+        self, square: float | Array, volume: float | Array, noise: float
+    ) -> float | Array:
+        """Logarithm of the evidence of models by what they leave and the volume of their priors."""
         if self.stated and noise <= 1.0:
-            return -0.5 * (found.square + found.volume)
-        return float(-0.5 * (count * (1.0 + np.log(found.square / count)) + found.volume))
+            return -0.5 * (square + volume)
+        return -0.5 * (self.count * (1.0 + np.log(square / self.count)) + volume)
+
+    def joined(self, chosen: tuple[int, ...], noise: float) -> Array:
+        """(K,) scores with one more candidate each, all at once; of the chosen -inf.
+
+        Values may be negative here and no prior is widened, so scores of what these rules bind are
+        not exact: they say where it is worth while to look.
+        """
+        P, pick = self.base.shape[1], self.picked(chosen)
+        G = self.whole
+        inner = G[np.ix_(pick, pick)].copy()
+        inner[np.diag_indices(len(pick))] += np.where(pick < P, 0.0, noise) + 1e-12
+        rest = G[P:, P:] - G[P:, pick] @ np.linalg.solve(inner, G[pick, P:])
+        square, volume = np.full((2, len(self.candidates)), np.inf)
+        own = float(np.linalg.slogdet(inner[P:, P:] / noise)[1])
+        widths = np.array([part.stop - part.start for part in self.slices])
+        for p in set(widths.tolist()):
+            which = np.flatnonzero(widths == p)
+            at = np.array([self.slices[e].start for e in which])[:, None] + np.arange(p)
+            block = rest[at[:, :, None], at[:, None, :]] + noise * np.eye(p)
+            gap = rest[at, -1]
+            taken = (gap * np.linalg.solve(block, gap[:, :, None])[:, :, 0]).sum(axis=1)
+            square[which] = np.maximum(rest[-1, -1] - taken, 1e-12)
+            volume[which] = own + np.linalg.slogdet(block / noise)[1]
+        score = np.asarray(self._evidence(square, volume, noise))
+        score[list(chosen)] = -np.inf
+        return score
+
+    @cached_property
+    def bound(self) -> Mask:
+        """(K,) candidates whose scores `joined` may tell far too low: their size may be any."""
+        P = self.base.shape[1]
+        return np.array([bool(self._may_be_any[P:][own].any()) for own in self.slices], dtype=bool)
 
     def noise(self, chosen: tuple[int, ...]) -> float:
         """Variance of what a model leaves, at least the stated one.

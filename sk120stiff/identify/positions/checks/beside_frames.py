@@ -37,12 +37,14 @@ class BesideFrames:
         along: (k, r, n) readings per compliance of every drive, under each of k stated loads.
         gap: (r,) what is to be explained.
         freedom: Numbers beyond those of frames and springs.
+        softest: (n,) compliances that no drive exceeds.
         others: (r, p) readings per parameter of each further cause that was asked about.
     """
 
     along: Array
     gap: Array
     freedom: int
+    softest: Array
     others: tuple[Array, ...] = ()
 
     def square(self, along: Array) -> float:
@@ -107,4 +109,5 @@ def beside_frames(
     along = np.array([R[:, k * n : (k + 1) * n] for k in range(len(parts))])
     ends = np.cumsum([len(parts) * n, *(block.shape[1] for block in blocks)])
     others = tuple(R[:, a:b] for a, b in pairwise(ends))
-    return BesideFrames(along, R[:, -1], len(gap) - Q.shape[1] - n, others)
+    softest = np.array([p.spec.plausible for p in bare.parameters])[own]
+    return BesideFrames(along, R[:, -1], len(gap) - Q.shape[1] - n, softest, others)

@@ -57,7 +57,7 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
         return ()
     stated = robot.gravity_in_base / size
     best = sag.best()
-    before, after = sag.left(stated), sag.left(best)
+    before, after = sag.left(stated), sag.within(best)
     odds = 0.5 * sag.freedom * np.log(before / max(after, 1e-300))
     if odds < BEYOND_DOUBT or after > AS_WELL * sag.signed(stated):
         return ()
@@ -144,12 +144,14 @@ class _Sag:
         pulled: (r, n) those that loads make beside it.
         gap: (r,) what is to be explained.
         freedom: Numbers beyond those of frames and springs.
+        softest: (n,) compliances that no drive exceeds.
     """
 
     by_axis: Array
     pulled: Array
     gap: Array
     freedom: int
+    softest: Array
 
     @classmethod
     def of(cls, found: Calibration) -> _Sag:
@@ -162,7 +164,7 @@ class _Sag:
         sag = beside_frames(found, [under(way) for way in (*np.eye(3), np.zeros(3))])
         by_axis = sag.along[:3] - sag.along[3]
         by_axis[np.abs(by_axis) < ROUNDING * np.abs(sag.along).max()] = 0.0
-        return cls(by_axis, sag.along[3], sag.gap, sag.freedom)
+        return cls(by_axis, sag.along[3], sag.gap, sag.freedom, sag.softest)
 
     def best(self) -> Array:
         """(3,) unit vector along which gravity explains most."""
@@ -172,6 +174,15 @@ class _Sag:
     def left(self, way: Array) -> float:
         """Square of what springs leave where gravity points along a unit vector (3,)."""
         return float(nnls(self._along(way), self.gap)[1] ** 2)
+
+    def within(self, way: Array) -> float:
+        """The same with springs no softer than any drive.
+
+        Few poses leave so little of a wrist beside the frames that only absurd ones would show.
+        """
+        A = self._along(way)
+        left = self.gap - A @ np.minimum(nnls(A, self.gap)[0], self.softest)
+        return float(left @ left)
 
     def signed(self, way: Array) -> float:
         """The same where springs may push: a balancer that lifts too much looks like one."""
