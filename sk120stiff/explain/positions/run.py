@@ -36,7 +36,6 @@ from sk120stiff.explain.positions.judge.changed import changed
 from sk120stiff.explain.positions.judge.fallen import (
     EVEN,
     TOGETHER,
-    borne_out,
     with_own_values,
 )
 from sk120stiff.explain.positions.judge.laws import (
@@ -46,7 +45,7 @@ from sk120stiff.explain.positions.judge.laws import (
     laws_at,
     with_fewer,
 )
-from sk120stiff.explain.positions.judge.posterior import Posterior, of_all
+from sk120stiff.explain.positions.judge.posterior import Posterior, borne_out, of_all
 from sk120stiff.explain.positions.judge.remainder import where_it_lives
 from sk120stiff.explain.positions.judge.settled import Campaign, left, less_likely, picked
 from sk120stiff.explain.positions.select.candidates import linear_at

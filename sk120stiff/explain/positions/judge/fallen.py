@@ -27,11 +27,6 @@ def with_own_values(linear: Linear, found: Chosen, final: Calibration) -> Chosen
     return Chosen(apart, {**found.dropped, **gone}) if gone else found
 
 
-def borne_out(linear: Linear, chosen: tuple[int, ...]) -> bool:
-    """Do poses left out bear every one of the chosen out?"""
-    return all(confirmed(gain(linear, chosen, e), linear) for e in chosen)
-
-
 def with_one_less(posterior: Posterior, found: Chosen, final: Calibration) -> Chosen | None:
     """Without the weakest name that does not stand; None: all do.
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import expit
 
 from sk120stiff.explain.positions.judge.sets import Sets, not_refuted
-from sk120stiff.explain.positions.select.choose import Chosen, frames_of
+from sk120stiff.explain.positions.select.choose import Chosen, confirmed, frames_of, gain
 from sk120stiff.explain.positions.select.linear import Linear
 
 CLEARLY = 3.0  # times as probable as the chosen set, for which another takes its place
@@ -49,32 +49,46 @@ class Posterior:
         names = [self.linear.candidates[c].id for c in (e, *rivals)]
         return dict(zip(names, map(float, share), strict=True))
 
-    def likelier(self, tried: Collection[frozenset[int]]) -> Chosen | None:
+    def likelier(self, found: Chosen, tried: Collection[frozenset[int]]) -> Chosen | None:
         """The likeliest set of no more names, where it is clearly likelier; None: there is none.
 
+        Poses left out have to agree, with every name of it and with all together.
+
         Args:
+            found: The chosen, and what fell, which does not come back.
             tried: Sets that had their turn.
         """
-        weights = self.sets.weights
+        weights, linear = self.sets.weights, self.linear
         here = frozenset(self.chosen)
-        others = [
+        own = linear.left_out(self.chosen, linear.noise(self.chosen))
+        likely = (
             each
             for each, weight in weights.items()
-            if len(each) <= len(here) and each not in tried and weight > CLEARLY * weights[here]
-        ]
-        if not others:
-            return None
-        best = max(others, key=lambda each: weights[each])
-        kept = tuple(e for e in self.chosen if e in best)
-        instead = " and ".join(self.linear.candidates[e].id for e in sorted(best - here))
-        why = f"fits, but {instead or 'all without it'} is likelier in its place."
-        gone = {e: f"{self.linear.candidates[e].id} {why}" for e in here - best}
-        return Chosen((*kept, *sorted(best - here)), gone)
+            if len(each) <= len(here)
+            and each not in tried
+            and each.isdisjoint(found.dropped)
+            and weight > CLEARLY * weights[here]
+        )
+        for best in sorted(likely, key=lambda each: -weights[each]):
+            order = (*(e for e in self.chosen if e in best), *sorted(best - here))
+            left = linear.left_out(order, linear.noise(order))
+            if left > own or not borne_out(linear, order):
+                continue
+            instead = " and ".join(linear.candidates[e].id for e in sorted(best - here))
+            why = f"fits, but {instead or 'all without it'} is likelier in its place."
+            gone = {e: f"{linear.candidates[e].id} {why}" for e in here - best}
+            return Chosen(order, {**found.dropped, **gone})
+        return None
 
     def _of(self, e: int) -> tuple[tuple[int, ...], float]:
         rivals = self.sets.in_its_place(e)
         narrow = self.sets.with_any((e, *rivals))
         return rivals, _beside_what_every_arm_has(self.linear, self.chosen, (e, *rivals), narrow)
+
+
+def borne_out(linear: Linear, chosen: tuple[int, ...]) -> bool:
+    """Do poses left out bear every one of the chosen out?"""
+    return all(confirmed(gain(linear, chosen, e), linear) for e in chosen)
 
 
 def of_all(linear: Linear, chosen: tuple[int, ...]) -> float:

@@ -13,19 +13,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.explain.positions.select.choose import RIVAL, confirmed, gain, usual
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.explain.priors import FALLEN
 
 WINDOW = 3.0  # loss of the logarithm of probability up to which others are looked for about a set
-WORTH = 9.0  # loss up to which a set weighs at all
+WORTH = 9.0  # loss up to which a set weighs at all, and is worth an exact score
 MOST = 3000  # sets that are looked at
 HALF = 0.5  # of how often sets hold both of two names or neither, if these have nothing in common
 ASKED = 3  # sets that hold a name in which poses left out are asked for it
-VIEWS = 3  # sets by which the errors are chosen beside which all are judged
+VIEWS = 2  # sets by which the errors are chosen beside which all are judged
 
-Scores = tuple[Callable[[tuple[int, ...]], float], Callable[[tuple[int, ...]], Array]]
+Scores = tuple[Callable[[tuple[int, ...]], float], Callable[[tuple[int, ...]], tuple[Array, Mask]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +103,7 @@ def price_of(linear: Linear, e: int) -> float:
 
 
 def _scores(linear: Linear, views: Collection[frozenset[int]]) -> Scores:
-    """The evidence of a set, and to first order of those with one name more."""
+    """The evidence of a set, and of all with one name more; see `Linear.joined`."""
     if linear.errors is not None:
         errors = linear.errors.likeliest([tuple(sorted(each)) for each in views])
         return errors.score, errors.joined
@@ -131,10 +131,15 @@ def _seen(linear: Linear, start: frozenset[int], scores: Scores) -> dict[frozens
             if rest not in found:
                 found[rest] = likely(rest)
             order = tuple(sorted(rest))
-            near = joined(order) - price - float(price[list(rest)].sum())
+            near, exact = joined(order)
+            near = near - price - float(price[list(rest)].sum())
             for c in linear.may_join(order):
                 wider = rest | {c}
-                if wider not in found and (linear.bound[c] or near[c] > best - WORTH):
+                if wider in found:
+                    continue
+                if exact[c]:
+                    found[wider] = float(near[c])
+                elif linear.bound[c] or near[c] > best - WORTH:
                     found[wider] = likely(wider)
     return found
 

@@ -109,23 +109,31 @@ class Campaign:
     def settled(self, now: Standing) -> Standing:
         """Names changed until they stand: by a likelier set of no more, or without the weakest."""
         tried = {frozenset(now.found.order)}
+        asked = False
         while True:
-            if other := now.posterior.likelier(tried):
+            other = None if asked else now.posterior.likelier(now.found, tried)
+            if other is not None:
                 tried.add(frozenset(other.order))
-                laws = laws_at(now.linear, other.order, self.seen)
-                linear = by_best_laws(now.linear, other.order, laws)
-                other = replace(other, dropped={**now.found.dropped, **other.dropped})
-                try:
-                    again = self.exactly(linear, other)
-                except Refusal:  # it only seemed likelier
-                    continue
-                if not less_likely(again, now.final, linear):
-                    now = self.standing(linear, other, laws, again)
+                again = self._instead(now, other)
+                now, asked = again or now, again is None
             elif lost := with_one_less(now.posterior, now.found, now.final):
                 tried.add(frozenset(lost.order))
-                now = self.standing(now.linear, lost, now.laws, self.exactly(now.linear, lost))
+                fitted = self.exactly(now.linear, lost)
+                now, asked = self.standing(now.linear, lost, now.laws, fitted), False
             else:
                 return now
+
+    def _instead(self, now: Standing, other: Chosen) -> Standing | None:
+        """Another set in the place of what stands; None: fitted exactly it says less."""
+        laws = laws_at(now.linear, other.order, self.seen)
+        linear = by_best_laws(now.linear, other.order, laws)
+        try:
+            again = self.exactly(linear, other)
+        except Refusal:  # it only seemed likelier
+            return None
+        if less_likely(again, now.final, linear):
+            return None
+        return self.standing(linear, other, laws, again)
 
 
 def less_likely(again: Calibration, before: Calibration, linear: Linear) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import linalg
 from scipy.special import logsumexp
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, Mask
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify.positions.noise.model_form import (
     ModelForm,
@@ -51,11 +51,14 @@ class SmoothError:
         scores = [self._one(k, chosen) for k in self.at]
         return float(logsumexp(scores) - np.log(len(scores)))
 
-    def joined(self, chosen: tuple[int, ...]) -> Array:
-        """(K,) the same with one more candidate each; see `Linear.joined`."""
-        each = (self.each[k] for k in self.at)
-        scores = [problem.joined(chosen, 1.0) - volume for problem, volume in each]
-        return np.asarray(logsumexp(scores, axis=0) - np.log(len(scores)))
+    def joined(self, chosen: tuple[int, ...]) -> tuple[Array, Mask]:
+        """(K,) the same with one more candidate each, and which are exact; see `Linear.joined`."""
+        scores, exact = list[Array](), list[Mask]()
+        for problem, volume in (self.each[k] for k in self.at):
+            score, own = problem.joined(chosen, 1.0)
+            scores.append(score - volume)
+            exact.append(own)
+        return logsumexp(scores, axis=0) - np.log(len(scores)), np.all(exact, axis=0)
 
     def likeliest(self, sets: Sequence[tuple[int, ...]]) -> SmoothError:
         """The errors alone that are likeliest beside any of these sets."""

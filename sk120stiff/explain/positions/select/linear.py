@@ -30,8 +30,8 @@ class BesideErrors(Protocol):
     def score(self, chosen: tuple[int, ...], /) -> float:
         """Logarithm of the evidence, up to a constant of all models."""
 
-    def joined(self, chosen: tuple[int, ...], /) -> Array:
-        """(K,) the same with one more candidate each; see `Linear.joined`."""
+    def joined(self, chosen: tuple[int, ...], /) -> tuple[Array, Mask]:
+        """(K,) the same with one more candidate each, and which are exact; see `Linear.joined`."""
 
     def likeliest(self, sets: Sequence[tuple[int, ...]], /) -> BesideErrors:
         """Beside those errors alone that are likeliest for these sets."""
@@ -253,31 +253,41 @@ class Linear:
             return -0.5 * (square + volume)
         return -0.5 * (self.count * (1.0 + np.log(square / self.count)) + volume)
 
-    def joined(self, chosen: tuple[int, ...], noise: float) -> Array:
-        """(K,) scores with one more candidate each, all at once; of the chosen -inf.
+    def joined(self, chosen: tuple[int, ...], noise: float) -> tuple[Array, Mask]:
+        """(K,) scores with one more candidate each, all at once, and which of them are exact.
 
-        Values may be negative here and no prior is widened, so scores of what these rules bind are
-        not exact: they say where it is worth while to look.
+        Values may be negative here and no prior is widened. Where these rules would change nothing
+        a score is exact; the others say where it is worth while to look. Of the chosen it is -inf.
         """
         P, pick = self.base.shape[1], self.picked(chosen)
         G = self.whole
         inner = G[np.ix_(pick, pick)].copy()
         inner[np.diag_indices(len(pick))] += np.where(pick < P, 0.0, noise) + 1e-12
-        rest = G[P:, P:] - G[P:, pick] @ np.linalg.solve(inner, G[pick, P:])
-        square, volume = np.full((2, len(self.candidates)), np.inf)
+        X = np.linalg.solve(inner, G[pick, P:])
+        rest = G[P:, P:] - G[P:, pick] @ X
+        K = len(self.candidates)
+        square, volume = np.full((2, K), np.inf)
+        exact = np.zeros(K, dtype=bool)
         own = float(np.linalg.slogdet(inner[P:, P:] / noise)[1])
+        low = np.full(P + self.columns.shape[1], -np.inf)
+        low[P:][self.positive] = 0.0
+        high = np.where(self._may_be_any, 1.0, np.inf)
+        low = np.maximum(low, -high)
         widths = np.array([part.stop - part.start for part in self.slices])
         for p in set(widths.tolist()):
             which = np.flatnonzero(widths == p)
             at = np.array([self.slices[e].start for e in which])[:, None] + np.arange(p)
             block = rest[at[:, :, None], at[:, None, :]] + noise * np.eye(p)
             gap = rest[at, -1]
-            taken = (gap * np.linalg.solve(block, gap[:, :, None])[:, :, 0]).sum(axis=1)
-            square[which] = np.maximum(rest[-1, -1] - taken, 1e-12)
+            new = np.linalg.solve(block, gap[:, :, None])[:, :, 0]
+            square[which] = np.maximum(rest[-1, -1] - (gap * new).sum(axis=1), 1e-12)
             volume[which] = own + np.linalg.slogdet(block / noise)[1]
+            old = X[:, -1] - np.einsum("nmp,mp->mn", X[:, at], new)
+            exact[which] = ((old >= low[pick]) & (old <= high[pick])).all(axis=1)
+            exact[which] &= ((new >= low[P + at]) & (new <= high[P + at])).all(axis=1)
         score = np.asarray(self._evidence(square, volume, noise))
         score[list(chosen)] = -np.inf
-        return score
+        return score, exact
 
     @cached_property
     def bound(self) -> Mask:
