@@ -15,6 +15,7 @@ from sk120stiff.effects.foundation import BaseRocking
 from sk120stiff.explain import Options
 from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.positions.judge.laws import as_fitted, by_best_laws, laws_at
+from sk120stiff.explain.positions.judge.settled import Campaign
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.explain.positions.select.candidates import linear_at
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
@@ -137,7 +138,7 @@ def test_a_fit_that_went_another_way_begins_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where more is left than to first order, the values found so are another start."""
-    module = sys.modules[explain_positions.__module__]
+    module = sys.modules[Campaign.__module__]
     x = tracked(errors(4).stands(poses(60, 41))[0]) + 2e-5 * RNG.normal(size=(60, 3))
     data = sk.read(write(tmp_path, poses(60, 41), x, FIT + NOISE))
     robot = sk.load_robot(data.robot, base="base", tool="tool")

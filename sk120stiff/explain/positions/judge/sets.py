@@ -55,12 +55,13 @@ class Sets:
             without = {s: w for s, w in self.weights.items() if s not in held}
             likely = dict[int, float]()
             for c in frozenset().union(*without) - self.chosen:
-                instead = sum(w for s, w in without.items() if c in s)
-                neither = sum(w for s, w in without.items() if c not in s)
-                both = sum(w for s, w in held.items() if c in s)
-                alone = sum(w for s, w in held.items() if c not in s)
-                if instead >= np.exp(-RIVAL) * alone and both * neither < HALF * alone * instead:
-                    likely[c] = instead
+                instead = [w for s, w in without.items() if c in s]
+                neither = [w for s, w in without.items() if c not in s]
+                both = [w for s, w in held.items() if c in s]
+                alone = [w for s, w in held.items() if c not in s]
+                as_much = max(instead) >= np.exp(-RIVAL) * max(alone, default=0.0)
+                if as_much and sum(both) * sum(neither) < HALF * sum(alone) * sum(instead):
+                    likely[c] = sum(instead)
             if not likely:
                 return tuple(found)
             found.append(max(likely, key=lambda c: likely[c]))

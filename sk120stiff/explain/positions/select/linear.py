@@ -230,11 +230,13 @@ class Linear:
 
         Those of a foundation: a tool so soft looks like a mass that hangs elsewhere than stated.
         """
-        out = [False] * self.base.shape[1]
-        for each in self.candidates:
-            foundation = each.place == BaseRocking.place
-            out += [foundation and spec.customary is not None for spec in each.parameters]
-        return np.array(out)
+        P = self.base.shape[1]
+        out = np.zeros(P + self.columns.shape[1], dtype=bool)
+        for each, own in zip(self.candidates, self.slices, strict=True):
+            if each.place == BaseRocking.place:
+                any_size = [spec.customary is not None for spec in each.parameters]
+                out[P + own.start : P + own.stop] = any_size
+        return out
 
     def score(self, chosen: tuple[int, ...], noise: float) -> float:
         """Logarithm of the evidence, up to a constant of all models.
