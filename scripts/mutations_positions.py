@@ -91,15 +91,38 @@ OF_POSITIONS: tuple[Fault, ...] = (
         series_of_loaded_rows_without_a_place=("off = np.array([place.get(label, place.get(of[label], np.zeros(3))) for label in labels])", "off = apart"),
     ),
     *of(
-        "explain/positions/judge/posterior.py", *POSITIONS,
-        rivals_of_nothing_forgotten=("nothing + np.log(len(others) + 1.0)])", "nothing])"),
+        "explain/positions/judge/posterior.py", *tests("positions/explain", "sets"),
+        larger_sets_take_the_place=("if len(each) <= len(here)", "if True"),
+        what_fell_comes_back=("            and each.isdisjoint(found.dropped)\n", ""),
+        equals_take_turns=("weight > CLEARLY * weights[here]", "weight >= 0.0 * weights[here]"),
+    ),
+    *of(
+        "explain/positions/judge/sets.py", *tests("positions/explain", "sets", "linear"),
+        names_that_cost_nothing=("return float(np.log(len(linear.candidates))) - usual", "return 0.0 * usual"),
+        what_poses_left_out_refute_counts=("weight[among] *= FALLEN * without / weight[among].sum()", "pass"),
+        what_comes_and_goes_stands_instead=("if as_much and sum(both)", "if as_much or sum(both)"),
+        anything_stands_instead=("as_much = max(instead) >= np.exp(-RIVAL) * max(alone, default=0.0)", "as_much = True"),
     ),
     *of(
         "explain/positions/select/linear.py", *POSITIONS,
-        evidence_without_its_volume=("return -0.5 * (found.square + found.volume)", "return -0.5 * found.square"),
+        evidence_without_its_volume=("return -0.5 * (square + volume)", "return -0.5 * square"),
         poses_left_out_in_the_fit=("G = self.whole if without is None else self.whole - self.sums[without]", "G = self.whole"),
         parts_softer_than_rigid=("wrong = (pick >= P) & (x < 0.0)", "wrong = (pick >= P) & (x < -1e99)"),
         noise_smaller_than_stated=("return max(left, together) if self.stated else left", "return left"),
+    ),
+    *of(
+        "explain/positions/select/linear.py", *tests("positions/explain", "sets"),
+        scores_at_once_without_what_is_chosen=("own + np.linalg.slogdet(block / noise)[1]", "np.linalg.slogdet(block / noise)[1]"),
+        signs_that_do_not_bind=("low[P:][self.positive] = 0.0", "low[P:][self.positive] = -np.inf"),
+    ),
+    *of(
+        "explain/positions/judge/laws.py", *tests("positions/explain", "explain"),
+        fitted_laws_by_the_columns_of_others=("linear = linear.by_law(e, *_block(linear, seen, law, found[law]))", "pass"),
+    ),
+    *of(
+        "measurements/placing/turned.py", *tests("positions", "targets", "stated"),
+        no_arm_is_off_by_more_than_three_degrees=("ASKEW = np.radians(10.0)", "ASKEW = np.radians(3.0)"),
+        any_rotation_is_a_tools=("    if left < ASKEW:", "    if True:"),
     ),
     *of(
         "identify/positions/omitted/nuisances.py", *tests("positions/uncertainty", "own_weight"),
