@@ -42,7 +42,7 @@ def validated(
 
     Args:
         where: The file, or what tells the place of a key in it.
-        like: Examples of what can be written, by the key with its section (a.b), where its own name
+        like: Examples of what can be written, by the key with its section (a.b) where its own name
             stands for another thing elsewhere, by its own name, or by that of its section.
 
     Raises:

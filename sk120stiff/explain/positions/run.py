@@ -55,6 +55,7 @@ from sk120stiff.explain.positions.select.choose import (
     choose,
     gain,
     nothing_named,
+    threshold,
 )
 from sk120stiff.explain.positions.select.linear import Linear, everything
 from sk120stiff.explain.select.form import beside_form, forms
@@ -156,7 +157,7 @@ def _explained(
             seen, (linear, found, laws, hidden) = final, about
             break
         again = Campaign(base, final, readings, catalogue).exactly(*about[:2])
-        if less_likely(again, final, linear):
+        if less_likely(again, final, 2.0 * threshold(linear)):  # what says the same takes turns
             break
         seen, (linear, found, laws, hidden), final = final, about, again
     campaign = Campaign(base, seen, readings, catalogue)

@@ -53,7 +53,7 @@ def targets_on_tool(
     beside = _off(tool * sits[group], read)
     if said.fit_axes:
         _refuse(beside, _slips(tool, read, group, len(labels)), readings)
-        return sits.as_rotvec(), ()
+        return sits.as_rotvec(), _far_off(beside)
     left = _off(tool, read)
     alike = float(sits.magnitude().max())
     if left < FITS:
@@ -65,7 +65,23 @@ def targets_on_tool(
         return None, (told,) if alike > MOUNTED and beside < BETTER * left else ()
     slips = chain(_slips(tool, read), [(beside, *_own_axes(alike))] if beside < FITS else [])
     _refuse(left, slips, readings)
-    return None, ()
+    return None, _far_off(left, beside)
+
+
+def _far_off(left: float, beside: float | None = None) -> tuple[str, ...]:
+    """What is said of rotations that nothing but the arm itself explains."""
+    if left < FITS:
+        return ()
+    alike = (
+        ""
+        if beside is None
+        else f", {np.degrees(beside):.2g} deg but for a turn that all have in common ('rotation: "
+        "{axes: target}' lets the fit find that)"
+    )
+    return (
+        f"Rotations are {np.degrees(left):.2g} deg off those of the placed robot (median){alike}: "
+        "so far off are arms whose joints were never calibrated.",
+    )
 
 
 def mounting(tool: Rotation, read: Rotation, group: Index, count: int) -> Rotation:

@@ -152,6 +152,7 @@ _REGISTERED = (
     "registered: {xyz: [0, 0, 0], unit: mm, rotation: [0, 0, 0], rotation_unit: rad, "
     "std_xyz: [0, 0, 0], std_rotation: [0, 0, 0], rms: 0, poses: 3}"
 )
+_PAYLOAD = "payload: {point: {xyz: [0, 0, 120], unit: mm}}"
 _EXAMPLES = {
     "point": "point: {xyz: [-60.0, 40.0, 150.0], unit: mm}",
     "force": "force: {frame: base, point: {xyz: [0.0, 0.0, 100.0], unit: mm}}",
@@ -161,7 +162,8 @@ _EXAMPLES = {
     "registered": _REGISTERED,
     "registered.rotation": _REGISTERED,
     "points": "points: {A: {xyz: [0, 0, 100], unit: mm}, B: {xyz: [50, 0, 100], unit: mm}}",
-    "payload": "payload: {point: {xyz: [0, 0, 120], unit: mm}}",
+    "payload": _PAYLOAD,
+    "payload.point": _PAYLOAD,
     "joints": "joints: {joint_3: -(J2 + J3), joint_4: J4/101}",
     "gravity": "gravity: [0, 0, -9.81]",
     "noise": "noise: {sigma: 10, unit: um}",

@@ -16,6 +16,7 @@ from sk120stiff.measurements.table.settings import read_settings
         ("noise: {sigma: 10, unit: um, rotation: 20 urad}", "noise"),
         ("noise: {force: a hundredth}", "noise"),
         ("registered: {rotation: none}", "registered"),
+        ("payload: {point: flange}", "payload"),
         ("rotation: target", "rotation"),
         ("force: sensor", "force"),
     ],

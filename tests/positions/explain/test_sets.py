@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from sk120stiff.effects import effect
+from sk120stiff.explain.positions.judge import sets
 from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.judge.sets import WINDOW, Sets
 from sk120stiff.explain.positions.judge.smooth_error import of_errors
 from sk120stiff.explain.positions.select.choose import Chosen
 from sk120stiff.explain.positions.select.linear import Linear
+from sk120stiff.explain.priors import FALLEN
 from sk120stiff.robot import load_robot
 from tests.positions.explain.test_linear import ROWS, linear
 
@@ -64,7 +66,7 @@ def weighed(**weights: float) -> Sets:
     """Sets by the digits of their names, about 01."""
     whole = sum(weights.values())
     found = {frozenset(map(int, name[1:])): w / whole for name, w in weights.items()}
-    return Sets(found, frozenset((0, 1)))
+    return Sets(found, frozenset((0, 1)), 4)
 
 
 def test_what_sets_hold_instead_stands_in_a_names_place() -> None:
@@ -97,7 +99,7 @@ def test_one_name_takes_the_place_of_two_that_stood_for_it() -> None:
     posterior = Posterior(made, (0, 1))
     other = posterior.likelier(Chosen((0, 1), {}), ())
     assert other is not None and other.order == (2,)
-    assert "is likelier in its place" in other.dropped[0]
+    assert "the readings are likelier with" in other.dropped[0]
     assert posterior.sets.with_any((2,)) > 0.95
     assert posterior.likelier(Chosen((0, 1), {2: "fell"}), ()) is None
     assert posterior.likelier(Chosen((0, 1), {}), {frozenset((2,))}) is None
@@ -113,3 +115,19 @@ def test_no_set_that_is_nearly_the_likeliest_is_missed() -> None:
     weights = Posterior(made, (0,)).sets.weights
     assert 3 < len(near) <= len(near & weights.keys())
     assert sum(weights.values()) == pytest.approx(1.0)
+
+
+def test_all_that_poses_left_out_refute_are_held_back_however_many_stand_for_one_another(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each counts against what there is without it: all together have a fraction, not each."""
+    made = shown(1.4)
+    columns = made.columns.copy()
+    columns[:, 1:3] = columns[:, [0]] + 0.01 * columns[:, 1:3]
+    monkeypatch.setattr(sets, "confirmed", lambda *_: False)
+    found = Posterior(replace(made, columns=columns), ()).sets
+    alone = [found.with_any((e,)) for e in range(3)]
+    assert max(alone) < 1.001 * FALLEN / (1.0 + FALLEN)
+    assert max(alone) > 0.9 * FALLEN / (1.0 + FALLEN)  # and no more than that
+    certain = replace(made, residual=300.0 * made.residual)  # beyond what exp() of the odds holds
+    assert np.isfinite([*Posterior(certain, (1,)).sets.weights.values()]).all()

@@ -12,17 +12,13 @@ from sk120stiff.explain.positions.select.choose import (
     SURE,
     SURE_OF_USUAL,
     Chosen,
-    confirmed,
     entry_price,
-    gain,
     usual,
 )
 from sk120stiff.explain.positions.select.linear import Linear
-from sk120stiff.explain.priors import FALLEN
 
 # What is left out by other poses grows by λ ± 2 √λ: √λ at which it is confirmed in 80 % of cases.
 CONFIRMED, CONFIRMED_OF_USUAL = 2.0 * (SURE + 0.84), 2.0 * (SURE_OF_USUAL + 0.84)
-UNLIKELY = 0.05  # probability below which nobody asks poses left out
 LEAST = 0.01  # probability below which nobody is told
 
 
@@ -57,22 +53,14 @@ def detectable(linear: Linear, found: Chosen) -> tuple[Detectable, ...]:
 def probabilities(posterior: Posterior, found: Chosen) -> dict[str, float]:
     """Name → probability of its being at work, of all above `LEAST`.
 
-    Named causes share theirs with what explains as much; others stand in the sets that the
-    positions do not refute, and are the less likely where poses left out do not confirm them. What
-    fitted and was not confirmed by these is not counted.
+    Named causes share theirs with what explains as much; others have that of the sets that hold
+    them.
     """
-    linear = posterior.linear
     out: dict[str, float] = {}
     for e in found.order:
         for name, share in posterior.standing(e).items():
             out[name] = max(out.get(name, 0.0), share)
-    for e in linear.may_join(found.order):
-        effect = linear.candidates[e]
-        if e in found.dropped or effect.id in out:
-            continue
-        share = posterior.sets.with_any((e,))
-        wider = (*found.order, e)
-        if share > UNLIKELY and not confirmed(gain(linear, wider, e), linear):
-            share *= FALLEN
-        out[effect.id] = share
+    for e, effect in enumerate(posterior.linear.candidates):
+        if effect.id not in out:
+            out[effect.id] = posterior.sets.with_any((e,))
     return {name: p for name, p in out.items() if p >= LEAST}

@@ -18,7 +18,7 @@ CLEARLY = 3.0  # times as probable as the chosen set, for which another takes it
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Chosen names beside all sets that the positions do not refute.
+    """Chosen names beside all sets near them.
 
     Attributes:
         linear: The positions linearised.
@@ -75,7 +75,8 @@ class Posterior:
             if left > own or not borne_out(linear, order):
                 continue
             instead = " and ".join(linear.candidates[e].id for e in sorted(best - here))
-            why = f"fits, but {instead or 'all without it'} is likelier in its place."
+            place = f"with {instead} in its place" if instead else "without it"
+            why = f"fits, but the readings are likelier {place}."
             gone = {e: f"{linear.candidates[e].id} {why}" for e in here - best}
             return Chosen(order, {**found.dropped, **gone})
         return None

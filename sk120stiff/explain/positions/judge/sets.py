@@ -1,4 +1,4 @@
-"""Sets of names that the positions do not refute, and how probable each is.
+"""Sets of names near the chosen one, and how probable each is.
 
 A name may be wrong together with others: two frames and a wave where one base rocks. So sets are
 held against sets. From the chosen one on every set that differs by one name, or by one in another's
@@ -8,10 +8,12 @@ Madigan & Raftery, J. Am. Stat. Assoc. 89, 1994, p. 1535).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.special import logsumexp
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.explain.positions.select.choose import RIVAL, confirmed, gain, usual
@@ -19,10 +21,11 @@ from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.explain.priors import FALLEN
 
 WINDOW = 3.0  # loss of the logarithm of probability up to which others are looked for about a set
-WORTH = 9.0  # loss up to which a set weighs at all, and is worth an exact score
-MOST = 3000  # sets that are looked at
+WORTH = 9.0  # loss up to which a set weighs at all
+OPENED = 60  # sets about which others are looked for
 HALF = 0.5  # of how often sets hold both of two names or neither, if these have nothing in common
 ASKED = 3  # sets that hold a name in which poses left out are asked for it
+AGREED = 1e-6  # of a logarithm, by which names may be more probable than they are held back to
 VIEWS = 2  # sets by which the errors are chosen beside which all are judged
 
 Scores = tuple[Callable[[tuple[int, ...]], float], Callable[[tuple[int, ...]], tuple[Array, Mask]]]
@@ -35,36 +38,53 @@ class Sets:
     Attributes:
         weights: Of each set.
         chosen: The set about which the others were found.
+        count: How many candidates there are.
     """
 
     weights: dict[frozenset[int], float]
     chosen: frozenset[int]
+    count: int
 
     def with_any(self, names: Collection[int]) -> float:
         """Probability that one of these names at least is at work."""
-        return sum(w for each, w in self.weights.items() if not each.isdisjoint(names))
+        return float(self._weight[self._holds[:, list(names)].any(axis=1)].sum())
 
     def in_its_place(self, e: int) -> tuple[int, ...]:
         """What explains as much in the place of one of the chosen, the likeliest first.
 
         Sets hold it or the name; both or neither they hold less often than by chance.
         """
+        weight, holds = self._weight, self._holds
         found: list[int] = []
         while True:
-            held = {s: w for s, w in self.weights.items() if not s.isdisjoint((e, *found))}
-            without = {s: w for s, w in self.weights.items() if s not in held}
-            likely = dict[int, float]()
-            for c in frozenset().union(*without) - self.chosen:
-                instead = [w for s, w in without.items() if c in s]
-                neither = [w for s, w in without.items() if c not in s]
-                both = [w for s, w in held.items() if c in s]
-                alone = [w for s, w in held.items() if c not in s]
-                as_much = max(instead) >= np.exp(-RIVAL) * max(alone, default=0.0)
-                if as_much and sum(both) * sum(neither) < HALF * sum(alone) * sum(instead):
-                    likely[c] = sum(instead)
-            if not likely:
+            held = holds[:, [e, *found]].any(axis=1)
+            without, beside = np.where(held, 0.0, weight), np.where(held, weight, 0.0)
+            instead, both = without @ holds, beside @ holds
+            neither, alone = without.sum() - instead, beside.sum() - both
+            most = (without[:, None] * holds).max(axis=0, initial=0.0)
+            as_much = most >= np.exp(-RIVAL) * (beside[:, None] * ~holds).max(axis=0, initial=0.0)
+            likely = as_much & (both * neither < HALF * alone * instead) & (instead > 0.0)
+            likely[[*self.chosen]] = False
+            if not likely.any():
                 return tuple(found)
-            found.append(max(likely, key=lambda c: likely[c]))
+            found.append(int(np.argmax(np.where(likely, instead, -1.0))))
+
+    @cached_property
+    def _weight(self) -> Array:
+        return np.array([*self.weights.values()])
+
+    @cached_property
+    def _holds(self) -> Mask:
+        """(S, K) which sets hold which candidates."""
+        return table_of(self.weights, self.count)
+
+
+def table_of(sets: Collection[frozenset[int]], count: int) -> Mask:
+    """(S, count) which sets hold which candidates."""
+    holds = np.zeros((len(sets), count), dtype=bool)
+    for row, each in zip(holds, sets, strict=True):
+        row[list(each)] = True
+    return holds
 
 
 def not_refuted(linear: Linear, chosen: tuple[int, ...]) -> Sets:
@@ -81,24 +101,51 @@ def not_refuted(linear: Linear, chosen: tuple[int, ...]) -> Sets:
         if linear.errors is None or best in views or len(views) == VIEWS:
             break
         views.append(best)
-    weight = np.exp(np.array([*found.values()]) - max(found.values()))
-    sets = [*found]
-    for c in frozenset().union(*sets) - start:
-        among = np.array([c in each for each in sets])
-        without = float(weight[~among].sum())
-        if weight[among].sum() <= FALLEN * without:
-            continue
-        likeliest = np.argsort(np.where(among, -weight, 0.0))[:ASKED]
-        if not any(_confirmed(linear, sets[k], c) for k in likeliest if among[k]):
-            weight[among] *= FALLEN * without / weight[among].sum()
-    return Sets(dict(zip(sets, map(float, weight / weight.sum()), strict=True)), start)
+    log = _held_back(linear, start, [*found], np.array([*found.values()]))
+    weight = np.exp(log - logsumexp(log))
+    weights = dict(zip(found, map(float, weight), strict=True))
+    return Sets(weights, start, len(linear.candidates))
+
+
+def _held_back(
+    linear: Linear, start: frozenset[int], sets: Sequence[frozenset[int]], log: Array
+) -> Array:
+    """Logarithms of probabilities, of what poses left out do not bear out no more than a share.
+
+    Every such name counts against what there is without it; they are held back in turn, until all
+    are.
+    """
+    holds = table_of(sets, len(linear.candidates))
+    most = float(np.log(FALLEN))
+    known = dict[int, bool]()
+
+    def too_much(c: int) -> float:
+        """By how much sets with a name have more than the share of those without."""
+        among = holds[:, c]
+        if among.all() or not among.any():
+            return 0.0
+        return float(logsumexp(log[among]) - logsumexp(log[~among])) - most
+
+    names = [c for c in np.flatnonzero(holds.any(axis=0)).tolist() if c not in start]
+    while True:
+        above = {c: more for c in names if (more := too_much(c)) > AGREED}
+        for c in above:
+            if c not in known:
+                own = np.where(holds[:, c], log, -np.inf)
+                likeliest = [sets[k] for k in np.argsort(-own)[:ASKED] if holds[k, c]]
+                known[c] = any(_confirmed(linear, each, c) for each in likeliest)
+        refuted = [c for c in above if not known[c]]
+        if not refuted:
+            return log
+        for c in refuted:
+            log = log - max(too_much(c), 0.0) * holds[:, c]
 
 
 def _confirmed(linear: Linear, whole: frozenset[int], e: int) -> bool:
     return confirmed(gain(linear, tuple(sorted(whole)), e), linear)
 
 
-def price_of(linear: Linear, e: int) -> float:
+def _price_of(linear: Linear, e: int) -> float:
     """Evidence that a name has to bring to be as probable as not: one of all, as usual as it is."""
     return float(np.log(len(linear.candidates))) - usual(linear.candidates[e])
 
@@ -115,33 +162,30 @@ def _scores(linear: Linear, views: Collection[frozenset[int]]) -> Scores:
 def _seen(linear: Linear, start: frozenset[int], scores: Scores) -> dict[frozenset[int], float]:
     """Sets and the logarithm of the probability of each, up to a constant."""
     score, joined = scores
-    price = np.array([price_of(linear, e) for e in range(len(linear.candidates))])
+    price = np.array([_price_of(linear, e) for e in range(len(linear.candidates))])
 
     def likely(each: frozenset[int]) -> float:
         return score(tuple(sorted(each))) - float(price[list(each)].sum())
 
-    found, done = {start: likely(start)}, set[frozenset[int]]()
-    while len(found) < MOST:
+    found, opened = {start: likely(start)}, set[frozenset[int]]()
+    for _ in range(OPENED):
         best = max(found.values())
-        open_ones = [e for e, own in found.items() if own >= best - WINDOW and e not in done]
-        if not open_ones:
+        near = [e for e, own in found.items() if own >= best - WINDOW and e not in opened]
+        if not near:
             break
-        here = max(open_ones, key=lambda each: found[each])
-        done.add(here)
+        here = max(near, key=lambda each: found[each])
+        opened.add(here)
         for rest in _with_less(linear, here):
             if rest not in found:
                 found[rest] = likely(rest)
             order = tuple(sorted(rest))
-            near, exact = joined(order)
-            near = near - price - float(price[list(rest)].sum())
+            wider, exact = joined(order)
+            wider = wider - price - float(price[list(rest)].sum())
             for c in linear.may_join(order):
-                wider = rest | {c}
-                if wider in found:
+                worth = wider[c] > best - WORTH
+                if (whole := rest | {c}) in found or not (worth or linear.bound[c]):
                     continue
-                if exact[c]:
-                    found[wider] = float(near[c])
-                elif linear.bound[c] or near[c] > best - WORTH:
-                    found[wider] = likely(wider)
+                found[whole] = float(wider[c]) if exact[c] else likely(whole)
     return found
 
 

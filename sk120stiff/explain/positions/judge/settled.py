@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from sk120stiff.effects import Catalogue, Effect
-from sk120stiff.errors import Refusal
+from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.positions.judge.accounts import rms
 from sk120stiff.explain.positions.judge.fallen import with_one_less
 from sk120stiff.explain.positions.judge.laws import Laws, as_fitted, by_best_laws, laws_at
 from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.judge.smooth_error import beside_any
-from sk120stiff.explain.positions.select.choose import Chosen, threshold
+from sk120stiff.explain.positions.select.choose import Chosen
 from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.explain.select.form import with_best_form
 from sk120stiff.identify.positions.calibrate import (
@@ -48,7 +48,7 @@ class Standing:
 
     @cached_property
     def posterior(self) -> Posterior:
-        """The names beside all sets that the positions do not refute."""
+        """The names beside all sets near them."""
         return Posterior(self.linear, self.found.order)
 
     @property
@@ -129,24 +129,21 @@ class Campaign:
         linear = by_best_laws(now.linear, other.order, laws)
         try:
             again = self.exactly(linear, other)
-        except Refusal:  # it only seemed likelier
+        except (InputError, Refusal):  # it only seemed likelier
             return None
-        if less_likely(again, now.final, linear):
+        if less_likely(again, now.final):
             return None
         return self.standing(linear, other, laws, again)
 
 
-def less_likely(again: Calibration, before: Calibration, linear: Linear) -> bool:
-    """Does a set that was chosen anew say clearly less of the readings (BIC)?
-
-    Clearly is by as much as a name must bring. Sets that say nearly the same take turns.
-    """
+def less_likely(again: Calibration, before: Calibration, by: float = 0.0) -> bool:
+    """Does a set that was chosen anew say less of the readings by so much of BIC?"""
     numbers = len(before.residual)
     gain = numbers * np.log(left(before) ** 2 / left(again) ** 2)
     if before.problem.common or again.problem.common:
         gain = 2.0 * (again.log_likelihood - before.log_likelihood)
     price = (len(again.x) - len(before.x)) * np.log(numbers)
-    return bool(gain - price < -2.0 * threshold(linear))
+    return bool(gain - price < -by)
 
 
 def left(found: Calibration) -> float:

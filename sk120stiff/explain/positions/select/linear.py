@@ -261,7 +261,7 @@ class Linear:
         Values may be negative here and no prior is widened. Where these rules would change nothing
         a score is exact; the others say where it is worth while to look. Of the chosen it is -inf.
         """
-        P, pick = self.base.shape[1], self.picked(chosen)
+        P, pick = self.base.shape[1], self.solved(chosen, noise).pick  # without what is rigid
         G = self.whole
         inner = G[np.ix_(pick, pick)].copy()
         inner[np.diag_indices(len(pick))] += np.where(pick < P, 0.0, noise) + 1e-12
@@ -289,7 +289,7 @@ class Linear:
             exact[which] &= ((new >= low[P + at]) & (new <= high[P + at])).all(axis=1)
         score = np.asarray(self._evidence(square, volume, noise))
         score[list(chosen)] = -np.inf
-        return score, exact
+        return score, exact & (len(pick) == len(self.picked(chosen)))
 
     @cached_property
     def bound(self) -> Mask:

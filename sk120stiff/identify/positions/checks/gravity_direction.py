@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear, nnls
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Effect
@@ -64,7 +64,7 @@ def refuse_another_gravity(found: Calibration, readings: Measurements) -> tuple[
     off = float(np.arccos(np.clip(best @ stated, -1.0, 1.0)))
     share = f"{two_digits(100.0 * float(np.sqrt(after / before)))} %"
     if off < FAR:
-        other, lead = _another_cause(found, after)
+        other, lead = _another_cause(found, sag.left(best))
         if lead > 0.0:
             return ()  # what is not level moves what yields alone, and more is moved
         as_well = (
@@ -180,9 +180,7 @@ class _Sag:
 
         Few poses leave so little of a wrist beside the frames that only absurd ones would show.
         """
-        A = self._along(way)
-        left = self.gap - A @ np.minimum(nnls(A, self.gap)[0], self.softest)
-        return float(left @ left)
+        return 2.0 * float(lsq_linear(self._along(way), self.gap, (0.0, self.softest)).cost)
 
     def signed(self, way: Array) -> float:
         """The same where springs may push: a balancer that lifts too much looks like one."""
