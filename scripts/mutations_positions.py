@@ -92,16 +92,17 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/positions/judge/posterior.py", *tests("positions/explain", "sets"),
-        larger_sets_take_the_place=("if len(each) <= len(here)", "if True"),
+        larger_sets_take_the_place=("if 0 < len(each) <= len(here)", "if True"),
         what_fell_comes_back=("            and each.isdisjoint(found.dropped)\n", ""),
         equals_take_turns=("weight > CLEARLY * weights[here]", "weight >= 0.0 * weights[here]"),
     ),
     *of(
         "explain/positions/judge/sets.py", *tests("positions/explain", "sets", "linear"),
         names_that_cost_nothing=("return float(np.log(len(linear.candidates))) - usual", "return 0.0 * usual"),
-        what_poses_left_out_refute_counts=("weight[among] *= FALLEN * without / weight[among].sum()", "pass"),
-        what_comes_and_goes_stands_instead=("if as_much and sum(both)", "if as_much or sum(both)"),
-        anything_stands_instead=("as_much = max(instead) >= np.exp(-RIVAL) * max(alone, default=0.0)", "as_much = True"),
+        what_poses_left_out_refute_counts=("log = log - max(too_much(c), 0.0) * holds[:, c]", "known[c] = True"),
+        twins_are_held_back_once=("        if not refuted:\n            return log\n        for c in refuted:\n            log = log - max(too_much(c), 0.0) * holds[:, c]\n", "        for c in refuted:\n            log = log - max(too_much(c), 0.0) * holds[:, c]\n        return log\n"),
+        what_comes_and_goes_stands_instead=("as_much & (both * neither < HALF * alone * instead)", "as_much"),
+        anything_stands_instead=("likely = as_much & (both", "likely = (both"),
     ),
     *of(
         "explain/positions/select/linear.py", *POSITIONS,

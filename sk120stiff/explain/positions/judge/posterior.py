@@ -52,7 +52,8 @@ class Posterior:
     def likelier(self, found: Chosen, tried: Collection[frozenset[int]]) -> Chosen | None:
         """The likeliest set of no more names, where it is clearly likelier; None: there is none.
 
-        Poses left out have to agree, with every name of it and with all together.
+        Poses left out have to agree, with every name of it and with all together. What becomes of
+        the last name is for the caller to say.
 
         Args:
             found: The chosen, and what fell, which does not come back.
@@ -64,7 +65,7 @@ class Posterior:
         likely = (
             each
             for each, weight in weights.items()
-            if len(each) <= len(here)
+            if 0 < len(each) <= len(here)
             and each not in tried
             and each.isdisjoint(found.dropped)
             and weight > CLEARLY * weights[here]
