@@ -52,7 +52,8 @@ class Sets:
     def in_its_place(self, e: int) -> tuple[int, ...]:
         """What explains as much in the place of one of the chosen, the likeliest first.
 
-        Sets hold it or the name; both or neither they hold less often than by chance.
+        Sets hold it or the name; both or neither they hold less often than by chance, and neither
+        is less likely than it is.
         """
         weight, holds = self._weight, self._holds
         found: list[int] = []
@@ -61,9 +62,10 @@ class Sets:
             without, beside = np.where(held, 0.0, weight), np.where(held, weight, 0.0)
             instead, both = without @ holds, beside @ holds
             neither, alone = without.sum() - instead, beside.sum() - both
-            most = (without[:, None] * holds).max(axis=0, initial=0.0)
-            as_much = most >= np.exp(-RIVAL) * (beside[:, None] * ~holds).max(axis=0, initial=0.0)
-            likely = as_much & (both * neither < HALF * alone * instead) & (instead > 0.0)
+            likeliest = (without[:, None] * holds).max(axis=0, initial=0.0)
+            nothing = (without[:, None] * ~holds).max(axis=0, initial=0.0)
+            as_much = likeliest >= np.exp(-RIVAL) * (beside[:, None] * ~holds).max(axis=0)
+            likely = as_much & (both * neither < HALF * alone * instead) & (likeliest > nothing)
             likely[[*self.chosen]] = False
             if not likely.any():
                 return tuple(found)
