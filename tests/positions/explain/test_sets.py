@@ -74,6 +74,8 @@ def test_what_sets_hold_instead_stands_in_a_names_place() -> None:
     found = weighed(_01=0.6, _12=0.2, _013=0.12, _123=0.04, _1=0.001, _13=0.0002)
     assert found.in_its_place(0) == (2,)
     assert found.in_its_place(1) == ()
+    often = weighed(_01=0.27, _013=0.63, _1=0.03, _13=0.07)
+    assert often.in_its_place(0) == ()
     assert found.with_any((0, 2)) == pytest.approx(1.0, abs=0.002)
 
 
@@ -104,6 +106,7 @@ def test_one_name_takes_the_place_of_two_that_stood_for_it() -> None:
     assert posterior.likelier(Chosen((0, 1), {2: "fell"}), ()) is None
     assert posterior.likelier(Chosen((0, 1), {}), {frozenset((2,))}) is None
     assert Posterior(made, (2,)).likelier(Chosen((2,), {}), ()) is None
+    assert Posterior(shown(3.0, 2.0), (0,)).likelier(Chosen((0,), {}), ()) is None  # no more names
 
 
 def test_no_set_that_is_nearly_the_likeliest_is_missed() -> None:
