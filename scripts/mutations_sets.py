@@ -25,4 +25,4 @@ OF_SETS: tuple[Fault, ...] = (
         scores_at_once_without_what_is_chosen=("own + np.linalg.slogdet(block / noise)[1]", "np.linalg.slogdet(block / noise)[1]"),
         signs_that_do_not_bind=("low[P:][self.positive] = 0.0", "low[P:][self.positive] = -np.inf"),
     ),
-)
+)  # fmt: skip
