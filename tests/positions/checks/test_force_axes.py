@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.explain.positions.answer.explained import Explained
+from sk120stiff.identify.positions.checks.beside_frames import square_within
 from tests.positions.arm import Arm, poses, tracked, write
 from tests.positions.loaded_arm import MARKERS, SPRINGS, rests
 
@@ -79,3 +81,20 @@ def test_forces_that_are_right_or_nearly_so_are_not(tmp_path: Path, turn: float)
     names = {item.effect.id for item in found.findings}
     assert {f"joint_springs:j{k}" for k in (2, 3)} <= names
     assert ("force_rotation:sensor" in names) == (turn != 0.0)
+
+
+def test_springs_softer_than_any_drive_explain_nothing() -> None:
+    """What only they would explain is left; where none has to be, it is the usual least square."""
+    rng = np.random.default_rng(5)
+    along, c = rng.normal(size=(12, 3)), np.array([2e-6, 0.0, 5e-6])
+    gap = along @ c + 1e-7 * rng.normal(size=12)
+    free = nnls(along, gap)[1] ** 2
+    wide, narrow = np.array([1e-5, 1e-5, 1e-5]), np.array([1e-5, 1e-5, 2e-6])
+    assert square_within(along, gap, wide) == pytest.approx(free, rel=1e-9)
+    best = min(  # a grid sees no better one
+        float(np.sum((along @ np.array([a, b, 2e-6]) - gap) ** 2))
+        for a in np.linspace(0.0, 1e-5, 101)
+        for b in np.linspace(0.0, 1e-5, 101)
+    )
+    assert free < 0.1 * best
+    assert best * (1 - 1e-2) < square_within(along, gap, narrow) <= best

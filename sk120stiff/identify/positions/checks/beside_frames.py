@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear, nnls
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Effect, Elastic
@@ -50,6 +50,26 @@ class BesideFrames:
     def square(self, along: Array) -> float:
         """What springs leave of the gap's square with columns (r, n); none of them pushes."""
         return float(nnls(along, self.gap)[1] ** 2)
+
+    def within(self, along: Array) -> float:
+        """The same with springs no softer than any drive."""
+        return square_within(along, self.gap, self.softest)
+
+
+def square_within(along: Array, gap: Array, softest: Array) -> float:
+    """What springs leave of the square of a gap (r,) that are no softer than any drive.
+
+    Few poses leave so little of a wrist beside the frames that only absurd ones would show.
+
+    Args:
+        along: (r, n) readings per compliance.
+        gap: (r,) what is to be explained.
+        softest: (n,) compliances that no drive exceeds.
+    """
+    size = np.maximum(np.linalg.norm(along, axis=0), 1e-300)
+    whole = max(float(np.linalg.norm(gap)), 1e-300)
+    least = lsq_linear(along / size, gap / whole, (0.0, softest * size / whole), method="bvls")
+    return 2.0 * whole**2 * float(least.cost)
 
 
 def without_springs(model: Model) -> Model:

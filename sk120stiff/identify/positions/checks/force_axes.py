@@ -56,12 +56,15 @@ def refuse_other_forces(found: Calibration, readings: Measurements) -> None:
         return
     ways = list(_ways(readings.sensor_rpy))
     left = np.array([sag.square(way.along(sag)) for way in ways])
+    whole, freedom = float(sag.gap @ sag.gap), sag.freedom
+    enough = HALF * min(left[0], whole)
+    for k in np.flatnonzero(left <= enough):
+        left[k] = sag.within(ways[k].along(sag))
     least = float(left.min())
     best = min((way for way, own in zip(ways, left, strict=True) if own <= AS_GOOD * least),
                key=_Way.changes)  # fmt: skip
-    whole, freedom = float(sag.gap @ sag.gap), sag.freedom
     odds = 0.5 * freedom * np.log(left[0] / max(least, 1e-300)) - np.log(len(ways))
-    if not best.changes()[0] or odds < BEYOND_DOUBT or least > HALF * min(left[0], whole):
+    if not best.changes()[0] or odds < BEYOND_DOUBT or least > enough:
         return
     share = f"{two_digits(100.0 * float(np.sqrt(least / left[0])))} %"
     said, mend = best.words(frames, readings.sensor_rpy)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import lsq_linear, nnls
+from scipy.optimize import nnls
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import CATALOGUE, Effect
@@ -23,6 +23,7 @@ from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.beside_frames import (
     ROUNDING,
     beside_frames,
+    square_within,
     without_springs,
 )
 from sk120stiff.identify.positions.omitted.other_causes import causes_at
@@ -176,11 +177,8 @@ class _Sag:
         return float(nnls(self._along(way), self.gap)[1] ** 2)
 
     def within(self, way: Array) -> float:
-        """The same with springs no softer than any drive.
-
-        Few poses leave so little of a wrist beside the frames that only absurd ones would show.
-        """
-        return 2.0 * float(lsq_linear(self._along(way), self.gap, (0.0, self.softest)).cost)
+        """The same with springs no softer than any drive."""
+        return square_within(self._along(way), self.gap, self.softest)
 
     def signed(self, way: Array) -> float:
         """The same where springs may push: a balancer that lifts too much looks like one."""
