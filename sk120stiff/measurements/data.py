@@ -22,6 +22,7 @@ from sk120stiff.measurements.poses import (
     SAME_JOINT,
     refuse_differing_joints,
     refuse_joint_column,
+    refuse_strange_joints,
     rows_by_label,
 )
 from sk120stiff.measurements.sensor_axes import Rpy
@@ -306,14 +307,7 @@ class Measurements(Tabular):
             'joint_1_s'
         """
         listed = f"The actuated joints are {', '.join(names)}."
-        for name in self.joint_names:
-            if name not in names and name not in self.spare:
-                raise InputError(
-                    f"no actuated joint is called {name!r}{meant(name, names)}",
-                    where=self._file(f"column {name}"),
-                    remedy=f"{listed} A column that is no joint is kept as a note "
-                    "when its header has no unit in brackets.",
-                )
+        refuse_strange_joints(self.joint_names, names, self.spare, listed, self._file())
         for k, name in enumerate(names):
             kind = kinds[k] if kinds is not None else None
             own = self.joint_names, self.joint_kinds, tuple(self.extra)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sk120stiff import units
 from sk120stiff.arrays import Array, Index, Integers
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, meant
 
 _ARTICLE = {"angle": "an angle", "length": "a length"}
 NEXT = "next_"  # begins the labels of poses to measure next
@@ -88,6 +88,35 @@ def refuse_differing_joints(
         where=", ".join(part for part in place if part),
         remedy="Rows of one pose have the same joint values: "
         "correct the value, or give the row a pose label of its own.",
+    )
+
+
+def refuse_strange_joints(
+    columns: Sequence[str],
+    names: Sequence[str],
+    others: Collection[str],
+    listed: str,
+    file: str | None,
+) -> None:
+    """Raise an `InputError` where a column is no actuated joint.
+
+    Args:
+        columns: The joint columns.
+        names: The actuated joints.
+        others: Further columns that may be there.
+        listed, file: The sentence that lists the joints, and the file, for the message.
+    """
+    strange = [name for name in columns if name not in {*names, *others}]
+    if not strange:
+        return
+    as_many = len(strange) == len(set(names) - set(columns)) > 1
+    by_order = "'sk120stiff import' takes columns in the order of the joints. "
+    own = f"column {strange[0]}"
+    raise InputError(
+        f"no actuated joint is called {strange[0]!r}{meant(strange[0], names)}",
+        where=f"{file}, {own}" if file else own,
+        remedy=f"{listed} {by_order if as_many else ''}A column that is no joint is kept as a note "
+        "when its header has no unit in brackets.",
     )
 
 

@@ -52,6 +52,10 @@ CSV = {
         change("joint_1_s[deg],joint_2_l[deg]", "a,b"),
         ["no column holds a joint", "[deg]", "a and b have no unit"],
     ),
+    "joints by number": (
+        change("joint_1_s[deg],joint_2_l[deg]", "J1[deg],J2[deg]"),
+        ["called 'J1'", "'sk120stiff import' takes columns in the order of the joints"],
+    ),
     "one joint less": (
         change("joint_2_l[deg]", "spare"),
         ["'joint_2_l' has no column", "joint_2_l[deg]", "joint_1_s, joint_2_l"],
