@@ -17,8 +17,6 @@ from sk120stiff.explain import Explained
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.findings import likely, sentence_in
 from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
-from sk120stiff.explain.positions.judge.accounts import HeldOutFile
-from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from sk120stiff.identify.positions.words import findings, unseen
 from sk120stiff.model import Model, base_model
 
@@ -28,25 +26,9 @@ FEW = 4  # parameters of one effect that are printed; those of a joint's frame s
 def positions_answer(answer: Explained, document: Mapping[str, object], out: Path) -> Answer:
     """What was found, and how far readings that were kept out are off."""
     parts = _parts(answer, out)
-    held: dict[str, object] | None = None
     if answer.heldout is not None:
-        held = _held_out(answer.heldout, answer.final.problem)
         parts.append(answer.heldout.sentence(answer.final.problem))
-    return Answer({**document, "holdout": held}, parts)
-
-
-def _held_out(found: HeldOutFile, problem: PoseProblem) -> dict[str, object]:
-    """How far the held-out readings are off, as JSON."""
-    readings, rows = found.readings, np.flatnonzero(found.set_aside)
-    ending = "um" if problem.unit == "µm" else "urad"
-    return {
-        f"rms_{ending}": found.rms * 1e6,
-        "mean_distance_um": found.distance * 1e6 if np.isfinite(found.distance) else None,
-        "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
-        f"rms_of_all_{ending}": found.rms_of_all * 1e6,
-        f"registered_rms_{ending}": found.registered * 1e6,
-        "placed_anew": found.anew,
-    }
+    return Answer(document, parts)
 
 
 def yielding(model: Model) -> Model:
@@ -64,15 +46,12 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             f"({answer.chance_of(item)}, {answer.taken_off(item)})"
         )
         worth, faint = answer.rivals_of(item)
-        for other in worth:
-            share = likely(answer.probabilities.get(other, 0.0))
-            one = other in item.exact and other not in item.untold  # of one class nothing tells it
-            shown.append(f"  or {other} ({item.kind_of(other)}{'' if one else f'; {share}'})")
+        shown += [f"  or {other} ({answer.rival(item, other)})" for other in worth]
         if faint:
             shown.append(f"  or, each with {likely(0.0)} here: {listed(faint, 'or')}")
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
-    shown += answer.shares()
+    shown += (*answer.sums(), *answer.shares())
     whole = np.isfinite(answer.steps[-1].heldout_distance)
     rows = [
         (s.label, s.fit_rms * 1e6, s.heldout_rms * 1e6, s.heldout_distance * 1e6)[: 3 + whole]

@@ -22,16 +22,7 @@ from sk120stiff.explain.positions.advise.other_poses import (
 )
 from sk120stiff.explain.positions.answer.balancer import balancing, or_balancer, shared
 from sk120stiff.explain.positions.answer.explained import Explained, Named
-from sk120stiff.explain.positions.judge.accounts import (
-    families_of,
-    held_out_rms,
-    heldout_on,
-    nearer_as_a_whole,
-    numbers_told,
-    springs_of,
-    steps_of,
-    suspects_of,
-)
+from sk120stiff.explain.positions.judge.accounts import Account, heldout_on, numbers_told
 from sk120stiff.explain.positions.judge.changed import changed
 from sk120stiff.explain.positions.judge.fallen import (
     EVEN,
@@ -179,8 +170,8 @@ def _explained(
                 inside = numbers_told(seen, first.final, readings)  # with all that fell
                 guess = beside_laws(first.final, first.posterior, first.laws)
                 guess = beside_parts(guess, catalogue, options.exclude)
-                suspects = suspects_of(first.linear, first.found, seen, inside)
-                guessed = held_out_rms(first.linear, first.found.order, seen, inside)
+                account = Account(first.linear, first.found, seen, inside)
+                suspects, guessed = account.suspects(), account.left
                 nothing = nothing_named(now.linear, now.found)
                 bare = campaign.exactly(now.linear, nothing)
                 now = campaign.standing(now.linear, nothing, {}, bare)
@@ -208,7 +199,8 @@ def _explained(
         ),
     )
     noise, inside = linear.noise(found.order), numbers_told(seen, final, readings)
-    named, following = _named(now.posterior, final, options)
+    account = Account(linear, found, seen, inside)
+    named, following = _named(now.posterior, final, account, options)
     gap = linear.gap(found.order, noise, held_out=True)
     chance = chance_of_noise(final)
     lacking = chance is not None and chance < LEVEL
@@ -221,12 +213,10 @@ def _explained(
         base=base,
         final=final,
         linear=linear,
-        steps=steps_of(linear, found, base, seen, inside),
-        families=families_of(linear, found, seen, inside),
-        springs=springs_of(linear, found),
-        whole=None
-        if options.only or options.exclude
-        else nearer_as_a_whole(linear, found, seen, inside),
+        steps=account.steps(base),
+        families=account.families(),
+        springs=account.springs(),
+        whole=None if options.only or options.exclude else account.nearer_as_a_whole(),
         dropped=tuple(found.dropped.values()),
         hidden=tuple(effect.id for effect in hidden),
         rigid=tuple(
@@ -294,7 +284,7 @@ def _refuse_few_poses(readings: Measurements) -> None:
 
 
 def _named(
-    posterior: Posterior, final: Calibration, options: Options
+    posterior: Posterior, final: Calibration, account: Account, options: Options
 ) -> tuple[tuple[Named, ...], NextPoses | None]:
     """Every name with what explains as much, and the poses that would tell them apart."""
     linear, rivals = posterior.linear, posterior.names
@@ -305,7 +295,8 @@ def _named(
         others = [candidates[c] for c in own]
         exact = never_told(final, there, candidates[e], others) if there and others else ()
         ids = tuple(other.id for other in others)
-        item = Named(candidates[e], ids, exact, probability, gain(linear, posterior.chosen, e))
+        gained, share = gain(linear, posterior.chosen, e), account.share(e)
+        item = Named(candidates[e], ids, exact, probability, gained, share)
         named.append(or_balancer(item, final))
         pairs += [(candidates[e], other) for other in others if other.id not in exact][:1]
     following = None if there is None else next_poses(final, there, pairs)

@@ -206,13 +206,13 @@ def _fitted(
 
     What is called wild in the end took no part in the fit.
     """
-    sigma, common, model = dict(START), 0.0, start
+    sigma, common, turning, model = dict(START), 0.0, 1.0, start
     for turn in range(1, ROUNDS + MORE_ROUNDS + 1):
         used = readings.select(np.flatnonzero(readings.use & ~wild))
-        wide = _problem(model, used, sigma, common)
+        wide = _problem(model, used, sigma, common, turning)
         _refuse_too_few(wide)
         small, frozen = least_set(model, rigid_columns(wide, start), wide.span)
-        problem = _problem(small, used, sigma, common)
+        problem = _problem(small, used, sigma, common, turning)
         _refuse_no_rest(problem)
         found = fitted(problem)
         before, sigma = {**sigma, "": common}, learned(found)
@@ -220,7 +220,7 @@ def _fitted(
             told = common_of(found)
             if told.size and not common:  # what was all noise is parted into two
                 sigma = {k: told.noise * before[k] for k in START}
-            common = told.size
+            common, turning = told.size, told.turning
         again = wild_beside(found, readings, wild)
         same = alike(common, before.pop("")) and all(
             alike(sigma[k], before[k]) for k in wide.channels.present
@@ -246,8 +246,10 @@ def extended(found: Fit, effects: Sequence[Effect]) -> Fit:
     for effect in effects:
         model = model + effect
     first = fitted(replace(of_poses(found), model=model))
-    common = common_of(first).size if of_poses(found).common else 0.0
-    return fitted(replace(of_poses(first), model=first.model, sigma=learned(first), common=common))
+    problem = replace(of_poses(first), model=first.model, sigma=learned(first))
+    told = common_of(first) if problem.common else None
+    common, turning = (0.0, 1.0) if told is None else (told.size, told.turning)
+    return fitted(replace(problem, common=common, turning=turning))
 
 
 def _with_waves(found: Fit, catalogue: Catalogue) -> tuple[Fit, tuple[str, ...]]:
@@ -263,12 +265,16 @@ def _with_waves(found: Fit, catalogue: Catalogue) -> tuple[Fit, tuple[str, ...]]
 
 
 def _problem(
-    model: Model, used: Measurements, sigma: dict[str, float], common: float = 0.0
+    model: Model,
+    used: Measurements,
+    sigma: dict[str, float],
+    common: float = 0.0,
+    turning: float = 1.0,
 ) -> PoseProblem:
     channels = None if used.absolute is None else used.absolute.channels
     stated = channels is not None and any(channels.stated(kind) for kind in channels.present)
     noise = NoiseModel(START["position"], zero="separate", freedom=np.inf if stated else 0)
-    problem = PoseProblem(model, used, noise, sigma=sigma, common=common)
+    problem = PoseProblem(model, used, noise, sigma=sigma, common=common, turning=turning)
     own = problem.sigma_of_channels[problem.counted]  # rows may state their own
     return replace(problem, noise=replace(noise, sigma=float(np.sqrt(np.mean(own**2)))))
 

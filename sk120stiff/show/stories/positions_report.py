@@ -79,7 +79,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
                 [
                     figures,
                     Items(named or ["No cause is named."], ordered=bool(named)),
-                    *map(Note, answer.shares()),
+                    *map(Note, (*answer.sums(), *answer.shares())),
                     Note(next_step_of_positions(answer), "note", "What to do now"),
                 ],
             ),

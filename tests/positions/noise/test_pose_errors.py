@@ -68,6 +68,27 @@ def test_size_and_noise_come_back_whatever_noise_was_assumed(assumed: float) -> 
     assert np.mean(noises) == pytest.approx(1.0, rel=0.05)
 
 
+@pytest.mark.parametrize("turning", [1.0, 4.0])
+def test_turns_of_another_size_than_joints_make_come_back(turning: float) -> None:
+    """A wrist that yields turns the tool farther than it shifts it; three markers show it."""
+    turns, found = np.arange(6) >= 3, []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        pose = np.repeat(np.arange(40), 9)
+        ways, X = 1e4 * rng.normal(size=(360, 6)), rng.normal(size=(360, 20))
+        own = OFF * np.where(turns, turning, 1.0) * rng.normal(size=(40, 6))
+        gap = rng.normal(size=360) + np.einsum("mk,mk->m", ways, own[pose])
+        gap -= X @ np.linalg.lstsq(X, gap)[0]
+        whitening = PoseWhitening(np.ones(360), ways, pose)
+        found.append(common_error(gap, X, whitening, stated=False, turns=turns))
+    assert np.exp(np.mean(np.log([each.turning for each in found]))) == pytest.approx(
+        turning, rel=0.1
+    )
+    assert np.mean([each.size for each in found]) == pytest.approx(OFF, rel=0.1)
+    if turning == 1.0:
+        assert all(each.turning == 1.0 for each in found)
+
+
 def test_noise_alone_has_nothing_in_common() -> None:
     for seed in range(20):
         rng = np.random.default_rng(seed)

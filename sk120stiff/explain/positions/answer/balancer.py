@@ -11,6 +11,7 @@ that which was read with its error speaks for one over the other by the ratio of
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -37,7 +38,7 @@ def or_balancer(item: Named, final: Calibration) -> Named:
         return item
     known = (*item.alternatives, name), (*item.exact, name)
     more, exact = (tuple(dict.fromkeys(names)) for names in known)
-    return Named(item.effect, more, exact, item.probability, item.gain, (name,))
+    return replace(item, alternatives=more, exact=exact, untold=(name,))
 
 
 def shared(

@@ -11,6 +11,7 @@ import numpy as np
 
 from sk120stiff.explain.answer.document import (
     BEST_GUESS,
+    borne_out_document,
     intervals_of,
     micrometres,
     parameter_entry,
@@ -22,10 +23,12 @@ from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_resu
 from sk120stiff.explain.findings import sentence_in
 from sk120stiff.explain.positions.answer.explained import Explained, Named
 from sk120stiff.explain.positions.answer.next_step import next_step_of_positions
+from sk120stiff.explain.positions.judge.accounts import HeldOutFile
 from sk120stiff.files import csv_text, write_atomically
 from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.positions.residuals.remainder import remainder_entry
+from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from sk120stiff.identify.positions.uncertainty.undetected import beside_not_named
 from sk120stiff.identify.positions.words import findings, gap_sentence, unseen
 from sk120stiff.measurements import write_measurements
@@ -37,7 +40,7 @@ SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes c
 
 def verdict_of_positions(answer: Explained) -> dict[str, Any]:
     """The content of `verdict.json`."""
-    final, readings = answer.final, answer.readings
+    final, readings, held = answer.final, answer.readings, answer.heldout
     stated = final.problem.stated_sigma
     reasons = unseen(final)
     entries = _entries(final, reasons)
@@ -53,11 +56,13 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
             "noise_floor": None if stated is None else stated * 1e6,
             "p": answer.chance,
             "set_aside": int(final.wild.sum()),
+            "borne_out": borne_out_document(None if held is None else held.borne_out),
             "steps": [
                 {**step_entry(step), "heldout_mean_distance": micrometres(step.heldout_distance)}
                 for step in answer.steps
             ],
         },
+        "holdout": None if held is None else _held_out(held, final.problem),
         "families": [
             {"name": name, "share_um": um(share)} for name, share in answer.families.items()
         ],
@@ -93,6 +98,20 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
         "next_step": next_step_of_positions(answer),
         "said": findings(final, readings),
         "next_poses": None if answer.following is None else NEXT_POSES,
+    }
+
+
+def _held_out(found: HeldOutFile, problem: PoseProblem) -> dict[str, Any]:
+    """How far the held-out readings are off."""
+    readings, rows = found.readings, np.flatnonzero(found.set_aside)
+    ending = "um" if problem.unit == "µm" else "urad"
+    return {
+        f"rms_{ending}": found.rms * 1e6,
+        "mean_distance_um": found.distance * 1e6 if np.isfinite(found.distance) else None,
+        "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
+        f"rms_of_all_{ending}": found.rms_of_all * 1e6,
+        f"registered_rms_{ending}": found.registered * 1e6,
+        "placed_anew": found.anew,
     }
 
 
@@ -151,7 +170,7 @@ def _effect(
         "evidence": {
             "folds_improved": item.gain.folds,
             "folds": answer.linear.folds,
-            "heldout_gain": item.gain.share,
+            "heldout_gain": item.share,
             "heldout_gain_errors": item.gain.errors,
             "log_evidence": item.gain.evidence,
         },

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 SURE = 0.95  # probability of a name that is settled
 HARDLY = 0.01  # probability of an alternative below which it has no line of its own
 LEAST = 5e-4  # share of the gap that is nothing
+ROUNDED = 0.01  # of a sum of probabilities that are told by two digits each
 APART = 0.05  # share by which the gap to first order may be another than the exact one, untold
 
 
@@ -41,7 +42,9 @@ class Named:
         alternatives: What explains as much here.
         exact: Those of the alternatives that explain as much at every pose.
         probability: Of the effect or one of its alternatives.
-        gain: What it takes off at poses left out.
+        gain: What poses left out say of it, as the readings weigh.
+        share: What it takes off the gap at poses left out beside the others, of what is left
+            without it.
         untold: Those of the exact ones that are another thing to mend, and that something else than
             such readings tells from it.
     """
@@ -51,6 +54,7 @@ class Named:
     exact: tuple[str, ...]
     probability: float
     gain: Gain
+    share: float
     untold: tuple[str, ...] = ()
 
     @property
@@ -168,11 +172,28 @@ class Explained:
 
     def chance_of(self, item: Named) -> str:
         """How probable a name is, and where others explain as much how probable one of them is."""
-        if not item.others and not item.untold:
+        if not item.alternatives:
             return likely(item.probability)
-        same = (item.effect.id, *item.same)
-        own = likely(sum(self.probabilities.get(name, 0.0) for name in same))
+        own = likely(self.probabilities.get(item.effect.id, 0.0))
         return f"{own}; it or one of those not told from it: {likely(item.probability)}"
+
+    def rival(self, item: Named, other: str) -> str:
+        """Why one of the alternatives stands beside a name, and how probable it is."""
+        own, its = (self.probabilities.get(name, 0.0) for name in (item.effect.id, other))
+        more = ", more than of the one that model.yaml has" if its > own else ""
+        return f"{item.kind_of(other)}; {likely(its)}{more}"
+
+    def sums(self) -> tuple[str, ...]:
+        """Why probabilities of names that are not told apart add up to more, in a sentence."""
+        chance = self.probabilities
+        for item in self.findings:
+            names = item.effect.id, *item.alternatives
+            if sum(chance.get(name, 0.0) for name in names) > item.probability + ROUNDED:
+                return (
+                    "Names that are not told apart may be at work together: then their "
+                    "probabilities add up to more than that of one of them at least.",
+                )
+        return ()
 
     def rivals_of(self, item: Named) -> tuple[list[str], list[str]]:
         """Alternatives of a name that are worth a line each, and those that are hardly likely."""
@@ -190,20 +211,20 @@ class Explained:
         hidden = unseen(self.final)
         held = zip(self.final.parameters, self.final.at_bound, strict=True)
         own = [(p.name in hidden, bool(at)) for p, at in held if p.effect == item.effect]
-        said = f"takes off {100 * item.gain.share:.1f} %{of}"
+        said = f"takes off {100 * item.share:.1f} %{of}"
         if own and all(unknown for unknown, _ in own):
             return f"{said} together with errors of geometry, from which its size is not told"
         if own and all(at for _, at in own):
             return f"alone {said}; beside the others its value comes out as nothing"
-        if abs(item.gain.share) < LEAST:
+        if abs(item.share) < LEAST:
             return f"takes nothing off{of} beside the others"
-        if item.gain.share < 0.0:
-            return f"beside the others adds {-100 * item.gain.share:.1f} %{of}"
+        if item.share < 0.0:
+            return f"beside the others adds {-100 * item.share:.1f} %{of}"
         return said
 
     def shares(self) -> tuple[str, ...]:
         """Why shares of several names add up to more than all, in a sentence."""
-        if sum(item.gain.share for item in self.findings) <= 1.0:
+        if sum(item.share for item in self.findings) <= 1.0:
             return ()
         return (
             "Each share is of the gap that all other names leave without that one, so they add up "

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sk120stiff.explain.findings import likely
+from sk120stiff.explain.judge.borne_out import BorneOut, name_of
 from sk120stiff.explain.positions.answer.balancer import tell_apart
 from sk120stiff.explain.positions.answer.explained import SURE
 from sk120stiff.explain.positions.judge.fallen import EVEN
@@ -27,6 +28,8 @@ def headline(answer: Explained) -> str:
         return "Something is missing that no effect of the catalogue explains for sure."
     left = answer.final.form is not None or answer.lacking
     more = "; more is left than noise makes" if left else ""
+    if (held := _contradicted(answer)) is not None:
+        more += f"; {held.file} does not bear it out"
     open_ones = [item for item in answer.findings if not item.settled]
     count = len(answer.findings)
     if not open_ones:
@@ -50,6 +53,12 @@ def headline(answer: Explained) -> str:
     return f"{count} causes were missing: {named} settled{more}. Open: {told}."
 
 
+def _contradicted(answer: Explained) -> BorneOut | None:
+    """What readings kept out show, where they speak against the names."""
+    held = None if answer.heldout is None else answer.heldout.borne_out
+    return held if held is not None and held.contradicted else None
+
+
 def _one_of(answer: Explained, item: Named) -> str:
     """A name with its alternatives; those that are hardly likely are counted."""
     worth, faint = answer.rivals_of(item)
@@ -71,10 +80,13 @@ def next_step_of_positions(answer: Explained) -> str:
     if last < first:
         before = answer.steps[0].label if answer.displaced else "the registered arm"
         use += f" where {before} alone is off by {first:.4g} {unit}"
-    said = [f"{use}."]
-    held = None if answer.heldout is None else answer.heldout.borne_out
-    if held is not None and held.contradicted:
-        said = [held.advice(unit)]
+    if (kept := answer.heldout) is not None:
+        use += (
+            f"; at the readings of {name_of(kept.readings)} by {1e6 * kept.rms:.4g} "
+            f"(registered alone {1e6 * kept.registered:.4g}) {unit}"
+        )
+    held = _contradicted(answer)
+    said = [f"{use}." if held is None else held.advice(unit)]
     said = [MOVED, *said] if answer.moved else said
     named = {item.effect.id for item in answer.findings}
     most = next((share for share in answer.budget if share.name in named), None)

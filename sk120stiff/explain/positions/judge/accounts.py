@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from sk120stiff.explain.positions.select.linear import Linear
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.reregistration import placed_anew
 from sk120stiff.identify.positions.noise.sizes import wild_beside
+from sk120stiff.identify.positions.solve.pose_errors import PoseWhitening
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import warn_of_references
@@ -86,36 +88,129 @@ def numbers_told(seen: Calibration, final: Calibration, readings: Measurements) 
     return np.asarray(counted[~final.wild[rows][seen.problem.rows[counted]]])
 
 
-def steps_of(
-    linear: Linear, found: Chosen, base: Calibration, seen: Calibration, inside: Index
-) -> tuple[GapStep, ...]:
-    """The gap as one named cause after the other joins, over the numbers `inside`.
+@dataclass(frozen=True, eq=False)
+class Account:
+    """The gap [m] with named causes and without some of them.
 
-    The registered arm comes first as plain least squares place it: what it leaves is no draw of
-    each pose, however large what the readings of a pose have in common is beside the causes.
+    The model with all is taken as it is fitted: beside what the readings of a pose have in common.
+    One with fewer nobody fits so, since more would be in common beside it; it counts as it
+    foretells other poses better, so weighted or with every reading alike. The registered arm is
+    placed by plain least squares.
+
+    Attributes:
+        linear: The positions linearised.
+        found: The names.
+        seen: The calibration about which they are linearised.
+        inside: Numbers that count.
     """
-    white = seen.problem.of_channels
-    whole = _whole(linear, seen) & np.isin(np.arange(len(linear.residual)), inside)
-    first = " + ".join(base_labels(base)) or RIGID
-    labels = [first, *(f"+ {linear.candidates[e].id}" for e in found.order)]
-    steps = []
-    for k, label in enumerate(labels):
-        chosen = found.order[:k]
-        kind = white if k else replace(white, common=0.0)
-        metres, used = kind.undo, linear if k else linear.only(()).whitened(white, kind)
-        noise = used.noise(chosen)
-        fitted = used.gap(chosen, noise, held_out=False)
-        held = used.gap(chosen, noise, held_out=True)
-        distance = lengths(metres(held), linear, whole)
-        steps.append(
-            GapStep(
-                label,
-                rms(metres(fitted)[inside]),
-                rms(metres(held)[inside]),
-                float(distance.mean()) if len(distance) else np.nan,
+
+    linear: Linear
+    found: Chosen
+    seen: Calibration
+    inside: Index
+
+    @cached_property
+    def _ways(self) -> tuple[tuple[Linear, PoseWhitening], ...]:
+        """The linear problem in units of the noise: as fitted, and with every reading alike."""
+        white = self.seen.problem.of_channels
+        alike = replace(white, common=0.0)
+        as_fitted = self.linear, white
+        if white.common == 0.0:
+            return (as_fitted,)
+        return as_fitted, (self.linear.whitened(white, alike), alike)
+
+    def gaps(self, chosen: tuple[int, ...], *, as_fitted: bool = False) -> tuple[Array, Array]:
+        """(M,) what some causes leave, fitted and at poses left out [m]."""
+        ways = self._ways if chosen else self._ways[-1:]
+        found = []
+        for linear, white in ways[:1] if as_fitted else ways:
+            noise = linear.noise(chosen)
+            held, fitted = (
+                white.undo(linear.gap(chosen, noise, held_out=each)) for each in (True, False)
             )
+            found.append((fitted, held))
+        return min(found, key=lambda pair: rms(pair[1][self.inside]))
+
+    def held_out(self, chosen: tuple[int, ...], *, as_fitted: bool = False) -> float:
+        """Rms that some causes leave at poses left out."""
+        return rms(self.gaps(chosen, as_fitted=as_fitted)[1][self.inside])
+
+    @cached_property
+    def left(self) -> float:
+        """Rms that all names leave at poses left out."""
+        return self.held_out(self.found.order, as_fitted=True)
+
+    def taken(self, e: int) -> float:
+        """What one of the names takes off that rms beside the others."""
+        return self.held_out(self.linear.less(self.found.order, e)) - self.left
+
+    def share(self, e: int) -> float:
+        """The same as a share of what is left without it."""
+        taken = self.taken(e)
+        return taken / max(self.left + taken, 1e-300)
+
+    def steps(self, base: Calibration) -> tuple[GapStep, ...]:
+        """The gap as one named cause after the other joins."""
+        order, whole = self.found.order, _whole(self.linear, self.seen)
+        whole = whole & np.isin(np.arange(len(whole)), self.inside)
+        first = " + ".join(base_labels(base)) or RIGID
+        labels = [first, *(f"+ {self.linear.candidates[e].id}" for e in order)]
+        steps = []
+        for k, label in enumerate(labels):
+            fitted, held = self.gaps(order[:k], as_fitted=k == len(order))
+            distance = lengths(held, self.linear, whole)
+            away = float(distance.mean()) if len(distance) else np.nan
+            steps.append(GapStep(label, rms(fitted[self.inside]), rms(held[self.inside]), away))
+        return tuple(steps)
+
+    def families(self) -> dict[str, float]:
+        """Family → rms that its causes take off the held-out gap together.
+
+        A load that is misread shows by what yields alone: without that it is left out as well.
+        """
+        order, candidates = self.found.order, self.linear.candidates
+        groups: dict[str, list[int]] = {}
+        for e in order:
+            groups.setdefault(family(candidates[e]), []).append(e)
+        out = {}
+        for name, members in groups.items():
+            gone = set(members)
+            if name == COMPLIANCE:
+                gone |= {e for e in order if isinstance(candidates[e], LoadError | Weighing)}
+            out[name] = self.held_out(tuple(e for e in order if e not in gone)) - self.left
+        return out
+
+    def springs(self) -> float | None:
+        """Share of the held-out gap that springs in all joints take off; None: some are named."""
+        candidates = self.linear.candidates
+        springs = [e for e, effect in enumerate(candidates) if effect.joint_spring]
+        if not springs or set(springs) & set(self.found.order):
+            return None
+        return 1.0 - self.held_out((*self.found.order, *springs)) / max(self.left, 1e-300)
+
+    def nearer_as_a_whole(self) -> float | None:
+        """Rms at poses left out of all errors of geometry and all springs together.
+
+        That is what `identify` fits, without a name for any. None where the names leave no more, or
+        nearly so, and where only what loads do was read.
+        """
+        if self.seen.problem.channels.displacements_alone:
+            return None
+        whole = tuple(
+            e
+            for e, effect in enumerate(self.linear.candidates)
+            if isinstance(effect, Geometric) or effect.joint_spring
         )
-    return tuple(steps)
+        if not set(whole) - set(self.found.order):
+            return None
+        left = self.held_out(whole, as_fitted=True)
+        return left if left < NEARER * self.left else None
+
+    def suspects(self) -> tuple[Contender, ...]:
+        """Names that fit, and what each takes off the held-out rms."""
+        return tuple(
+            Contender(self.linear.candidates[e].id, self.taken(e)) for e in self.found.order
+        )
 
 
 def base_labels(base: Calibration) -> list[str]:
@@ -131,84 +226,6 @@ def _whole(linear: Linear, seen: Calibration) -> Mask:
     for kind, own in zip(seen.problem.channels.present, seen.problem.channels.kinds, strict=True):
         part[own] = kind == "position"
     return part
-
-
-def families_of(
-    linear: Linear, found: Chosen, seen: Calibration, inside: Index
-) -> dict[str, float]:
-    """Family → rms that its causes take off the held-out gap together, over `inside` [m].
-
-    A load that is misread shows by what yields alone: without that it is left out as well.
-    """
-    metres = seen.problem.of_channels.undo
-    groups: dict[str, list[int]] = {}
-    for e in found.order:
-        groups.setdefault(family(linear.candidates[e]), []).append(e)
-    noise = linear.noise(found.order)
-    left = rms(metres(linear.gap(found.order, noise, held_out=True))[inside])
-    out = {}
-    for name, members in groups.items():
-        gone = set(members)
-        if name == COMPLIANCE:
-            gone |= {
-                e for e in found.order if isinstance(linear.candidates[e], LoadError | Weighing)
-            }
-        rest = tuple(e for e in found.order if e not in gone)
-        out[name] = rms(metres(linear.gap(rest, noise, held_out=True))[inside]) - left
-    return out
-
-
-def springs_of(linear: Linear, found: Chosen) -> float | None:
-    """Share of the held-out gap that springs in all joints would take off, where none is named."""
-    springs = [e for e, effect in enumerate(linear.candidates) if effect.joint_spring]
-    if not springs or set(springs) & set(found.order):
-        return None
-    noise = linear.noise(found.order)
-    before = rms(linear.gap(found.order, noise, held_out=True))
-    return 1.0 - rms(linear.gap((*found.order, *springs), noise, held_out=True)) / before
-
-
-def nearer_as_a_whole(
-    linear: Linear, found: Chosen, seen: Calibration, inside: Index
-) -> float | None:
-    """Rms at poses left out of all errors of geometry and all springs together [m].
-
-    That is what `identify` fits, without a name for any. None where the names leave no more, or
-    nearly so, and where only what loads do was read.
-    """
-    if seen.problem.channels.displacements_alone:
-        return None
-    whole = tuple(
-        e
-        for e, effect in enumerate(linear.candidates)
-        if isinstance(effect, Geometric) or effect.joint_spring
-    )
-    if not set(whole) - set(found.order):
-        return None
-    left = held_out_rms(linear, whole, seen, inside)
-    return left if left < NEARER * held_out_rms(linear, found.order, seen, inside) else None
-
-
-def suspects_of(
-    linear: Linear, found: Chosen, seen: Calibration, inside: Index
-) -> tuple[Contender, ...]:
-    """Names that fit, and what each takes off the held-out rms over `inside` by itself [m]."""
-    whole = held_out_rms(linear, found.order, seen, inside)
-    return tuple(
-        Contender(
-            linear.candidates[e].id,
-            held_out_rms(linear, linear.less(found.order, e), seen, inside) - whole,
-        )
-        for e in found.order
-    )
-
-
-def held_out_rms(
-    linear: Linear, chosen: tuple[int, ...], seen: Calibration, inside: Index
-) -> float:
-    """Rms that some causes leave at poses left out, over the numbers `inside` [m]."""
-    gap = linear.gap(chosen, linear.noise(chosen), held_out=True)
-    return rms(seen.problem.of_channels.undo(gap)[inside])
 
 
 def rms(x: Array) -> float:

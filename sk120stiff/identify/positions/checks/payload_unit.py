@@ -9,7 +9,6 @@ import numpy as np
 from sk120stiff.effects import Effect, LoadError, Weighing
 from sk120stiff.errors import Refusal
 from sk120stiff.identify.positions.calibrate import Calibration, fitted
-from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 
 POUND = 0.45359237  # kg
 BETTER = 0.8  # of the gap's rms, below which pounds must bring it
@@ -30,13 +29,8 @@ def pounds(found: Calibration) -> list[str]:
     if any(_weighs_otherwise(p.effect) for p in found.parameters):
         return []
     lighter = replace(said, payload=POUND * said.payload)
-    other = PoseProblem(
-        found.model,
-        replace(problem.measurements, absolute=lighter),
-        problem.noise,
-        sigma=problem.sigma,
-        common=problem.common,
-    )
+    readings = replace(problem.measurements, absolute=lighter)
+    other = replace(problem, model=found.model, measurements=readings)
     try:
         tried = fitted(other)
     except Refusal:

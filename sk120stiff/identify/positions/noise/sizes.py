@@ -55,6 +55,7 @@ def common_of(found: Fit) -> Common:
         white.undo(found.jacobian[:, ~found.at_bound]),
         PoseWhitening(white.sigma, problem.by_pose, problem.pose_of_channels),
         stated=found.sigma_known,
+        turns=problem.turns,
     )
 
 

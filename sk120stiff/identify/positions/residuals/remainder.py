@@ -46,8 +46,9 @@ def smooth_part(final: Calibration, form: ModelForm) -> Size:
 def common_part(final: Calibration) -> Size:
     """Rms per axis of what the readings of a pose have in common [m].
 
-    That is what the gap holds beyond the noise, as stated or as differences within poses tell it.
-    Of its 95 % interval every pose counts as often as its joints move it, less what was estimated.
+    That is what the gap holds beyond the noise, as stated or as differences within poses tell it,
+    an error that is smooth over the joints among it. Of its 95 % interval every pose counts as
+    often as its joints move it, less what was estimated; of what is smooth, as independent numbers.
     """
     problem = final.problem
     white, counted = problem.of_channels, problem.counted
@@ -55,10 +56,18 @@ def common_part(final: Calibration) -> Size:
     noise = ((1.0 if final.sigma_known else final.unit) * white.sigma[counted]) ** 2
     poses = len(np.unique(problem.load_cases.pose))
     each = min(len(problem.rows) // poses, problem.by_joints.shape[1])
-    freedom = max(poses * each - final.estimated, 1)
+    freedom: float = max(poses * each - final.estimated, 1)
     best = float(np.sqrt(max(float(np.mean(square - noise)), 0.0) * poses * each / freedom))
+    if final.form is not None:
+        freedom = min(freedom, final.form.smooth)
     low, high = (best * (freedom / float(stats.chi2.ppf(q, freedom))) ** 0.5 for q in ENDS)
     return best, low, high
+
+
+def rms_of_gap(final: Calibration) -> float:
+    """Rms of what the calibration leaves of the readings [m]."""
+    gap = final.problem.of_channels.undo(final.residual)[final.problem.counted]
+    return float(np.sqrt(np.mean(gap**2)))
 
 
 def left_beyond_noise(final: Calibration) -> Size | None:
@@ -66,13 +75,9 @@ def left_beyond_noise(final: Calibration) -> Size | None:
     form, stated = final.form, final.problem.stated_sigma
     if final.sigma_known and stated is not None:
         return common_part(final) if final.problem.common else beyond(final, stated)
-    parts = [smooth_part(final, form)] if form is not None else []
     if final.problem.common:
-        parts.append(common_part(final))
-    if not parts:
-        return None
-    best, low, high = np.sqrt((np.array(parts) ** 2).sum(axis=0))
-    return float(best), float(low), float(high)
+        return common_part(final)
+    return None if form is None else smooth_part(final, form)
 
 
 def chance_of_noise(final: Calibration) -> float | None:
@@ -155,17 +160,23 @@ def remainder_sentences(final: Calibration) -> list[str]:
     said = []
     if stated:
         said.append(in_words(size, unit, stated=True))
-    elif final.form is not None:
-        said.append(in_words(smooth_part(final, final.form), unit, stated=False))
+    elif final.form is not None and not final.problem.common:
+        said.append(in_words(size, unit, stated=False))
     if final.problem.common and stated:
         said.append(
             f"The readings of a pose have it in common, and no law explains it: {own_course}"
         )
     elif final.problem.common:
-        best, low, high = (f"{1e6 * x:.3g}" for x in common_part(final))
+        best, low, high = (f"{1e6 * x:.3g}" for x in size)
+        smooth = "part of it is smooth over the joints, as an error of the model is, and "
         said.append(
             f"The readings of a pose have {best} {unit} (95 %: {low} to {high}) in common that no "
-            f"law explains: {own_course}"
+            f"law explains: {smooth if final.form is not None else ''}{own_course}"
+        )
+    if size[0] > (gap := rms_of_gap(final)):
+        said.append(
+            f"That is more than the gap of {1e6 * gap:.3g} {unit}, part of which the "
+            f"{final.estimated} values took that were fitted: other poses show it whole."
         )
     chance = chance_of_noise(final)
     alone = stated and not (final.form or final.problem.common or final.lacks)

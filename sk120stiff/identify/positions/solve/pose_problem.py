@@ -45,10 +45,12 @@ class PoseProblem(Problem):
         sigma: Standard uncertainty of each kind of channel that did not state its own [m or rad].
         common: Standard size of what a pose has of its own, as joints that stand off by as much
             [rad or m], see `pose_errors.py`; 0: nothing.
+        turning: How many times as far as these the tool turns of its own, beside its shift.
     """
 
     sigma: Mapping[str, float] = field(default_factory=dict)
     common: float = 0.0
+    turning: float = 1.0
 
     def __post_init__(self) -> None:
         absolute_of(self.measurements)
@@ -107,7 +109,8 @@ class PoseProblem(Problem):
         sigma = self.sigma_of_channels
         if self.common == 0.0:
             return PoseWhitening(sigma)
-        return PoseWhitening(sigma, self.by_pose, self.pose_of_channels, self.common)
+        ways = self.by_pose * np.where(self.turns, self.turning, 1.0)
+        return PoseWhitening(sigma, ways, self.pose_of_channels, self.common)
 
     @property
     def pose_of_channels(self) -> Index:
@@ -149,6 +152,13 @@ class PoseProblem(Problem):
         if channels.level is not None:
             tilted = inclined(channels.level, seen.standing, to_base @ motion[:, 3:], self._down)
         return channels.project(seen.position, seen.rotation, motion, moved, tilted)[1]
+
+    @property
+    def turns(self) -> Mask:
+        """(k,) which of the ways of `by_pose` turn the tool; of what a load does alone, none."""
+        count = self.by_pose.shape[1]
+        turning = np.arange(count) >= 3
+        return turning & (not self.channels.displacements_alone)
 
     @cached_property
     def by_joints(self) -> Array:
