@@ -82,7 +82,11 @@ def write_answer(
     tell = progress or (lambda _done, _total: None)
     document = answer.save(out, provenance=provenance(task.data, task.readings))
     tell(88, 100)
-    pages = _write_pages(answer, task, out) if report else {}
+    try:
+        pages = _write_pages(answer, task, out) if report else {}
+    except KeyboardInterrupt:
+        note(f"What was found stands in {out}; its pages, as report.html, were not made.")
+        raise
     tell(100, 100)
     return {**document, "out": out, "model": out / "model.yaml", **pages}
 
@@ -213,11 +217,10 @@ def _gain(suspect: Contender) -> str:
 
 def _sure(finding: Finding) -> str:
     """How probable a name is, and where others stand beside it, they and it together."""
-    together = likely(finding.probability)
-    if not finding.others:
+    together, own = likely(finding.probability), finding.evidence.odds.get(finding.effect.id)
+    if not finding.alternatives or own is None:
         return together
-    own = likely(finding.evidence.odds.get(finding.effect.id, 0.0))
-    return f"{own}; it or one of those below: {together}"
+    return f"{likely(own)}; it or one of those below: {together}"
 
 
 def _odds(answer: Explanation) -> list[str]:

@@ -11,7 +11,7 @@ from sk120stiff.effects.gravity_compensator import GravityCompensator
 from sk120stiff.errors import listed
 from sk120stiff.explain.answer.drifting import steady_offsets
 from sk120stiff.explain.answer.probabilities import EVEN, nothing, unsettled
-from sk120stiff.explain.answer.words import accounted, mostly_accounted
+from sk120stiff.explain.answer.words import accounted, mostly_accounted, worse_elsewhere
 from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.suspects import comes_and_goes
 from sk120stiff.explain.localise.words import microns
@@ -120,6 +120,15 @@ def _none(answer: Explanation) -> list[str]:
         return [
             f"That nothing is missing is not sure ({unsettled(answer)}): measure at more poses, or "
             "with larger loads, append the readings to the file and run this again."
+        ]
+    if worse_elsewhere(answer):
+        last = answer.steps[-1]
+        fitted, foretold = microns(last.fit_rms), microns(last.heldout_rms)
+        return [
+            f"Use model.yaml at poses like those measured: it fits them to {fitted} rms per axis, "
+            f"but without one of them it foretells it to {foretold}, so they are too few, or too "
+            "unlike, to say much of others. Measure at more poses, append the readings to the file "
+            "and run this again."
         ]
     return [
         "Use model.yaml as it is.",

@@ -75,7 +75,7 @@ def held_out_words(answer: Explanation) -> tuple[str, ...]:
     offsets = _of_single_poses(answer)
     far = [
         step
-        for step in answer.steps[1:]
+        for step in answer.steps[1:] or answer.steps
         if np.isfinite(step.heldout_rms) and step.heldout_rms > WORSE * step.fit_rms
     ]
     if not far:
@@ -88,8 +88,14 @@ def held_out_words(answer: Explanation) -> tuple[str, ...]:
     return (
         f"{far[-1].label.removeprefix('+ ')}: poses that are left out are foretold worse than "
         "others are fitted. Names, laws and values are learned anew without them, and where few "
-        "poses show a cause, the rest may miss it: trust the held-out number.",
+        "poses show a cause or a spring, the rest may miss it: trust the held-out number.",
     )
+
+
+def worse_elsewhere(answer: Explanation) -> bool:
+    """Does the final model foretell poses that are left out much worse than it fits?"""
+    last = answer.steps[-1]
+    return bool(np.isfinite(last.heldout_rms) and last.heldout_rms > WORSE * last.fit_rms)
 
 
 def _of_single_poses(answer: Explanation) -> float:

@@ -12,6 +12,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer, ahead
 from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
+from sk120stiff.cli.tables import progress_bar
 from sk120stiff.errors import InputError, warn
 from sk120stiff.measurements.importers import Told, import_readings
 from sk120stiff.measurements.importers.loads.masses_in_words import mass_told
@@ -167,39 +168,42 @@ def command(
         declare_readings(out)
     arm = open_robot(robot, base, tool)
     one, several = _places(point or [])
-    found = import_readings(
-        sources,
-        arm,
-        Told(
-            length=length,
-            angle=angle,
-            load=load,
-            wrench=None if wrench is None else wrench_of(wrench),
-            point=one,
-            points=several,
-            payload_point=None
-            if payload_point is None
-            else parse_values(payload_point, "length", where="--payload-point", like="0,0,120 mm"),
-            payloads=_masses(payload or []),
-            joints=_names(joints),
-            coverage=coverage,
-            forces=None if forces is None else forces.value,
-            forces_rpy=None
-            if forces_rpy is None
-            else parse_values(forces_rpy, "angle", where="--forces-rpy", like="0,0,45 deg"),
-            dates=None if dates is None else dates.value,
-        ),
-        joints_file=joints_file,
-        loads_file=loads_file,
-        before=before,
-        format_name=format_name,
-        columns=_names(columns),
-        sheet=sheet,
-        topic=topic,
-        marker=marker,
-        into_base=register,
-        taken_as=None if taken_as is None else taken_as.value,
-    )
+    with progress_bar("Reading the file and placing the arm"):
+        found = import_readings(
+            sources,
+            arm,
+            Told(
+                length=length,
+                angle=angle,
+                load=load,
+                wrench=None if wrench is None else wrench_of(wrench),
+                point=one,
+                points=several,
+                payload_point=None
+                if payload_point is None
+                else parse_values(
+                    payload_point, "length", where="--payload-point", like="0,0,120 mm"
+                ),
+                payloads=_masses(payload or []),
+                joints=_names(joints),
+                coverage=coverage,
+                forces=None if forces is None else forces.value,
+                forces_rpy=None
+                if forces_rpy is None
+                else parse_values(forces_rpy, "angle", where="--forces-rpy", like="0,0,45 deg"),
+                dates=None if dates is None else dates.value,
+            ),
+            joints_file=joints_file,
+            loads_file=loads_file,
+            before=before,
+            format_name=format_name,
+            columns=_names(columns),
+            sheet=sheet,
+            topic=topic,
+            marker=marker,
+            into_base=register,
+            taken_as=None if taken_as is None else taken_as.value,
+        )
     doubts = doubts_of(found, arm)
     for sentence in doubts:
         warn(sentence)
@@ -212,6 +216,10 @@ def command(
         parts = [f"Written to {out} and {out.with_suffix('.yaml')}."]
     document = {**document_of(found, out, written=not preview), "doubts": doubts}
     return Answer(document, parts)
+
+
+def _place(text: str) -> Array:
+    return parse_values(text, "length", where="--payload-point", like="0,0,120 mm")
 
 
 def _names(text: str | None) -> tuple[str, ...] | None:
