@@ -217,10 +217,11 @@ def _gain(suspect: Contender) -> str:
 
 def _sure(finding: Finding) -> str:
     """How probable a name is, and where others stand beside it, they and it together."""
-    together, own = likely(finding.probability), finding.evidence.odds.get(finding.effect.id)
-    if not finding.alternatives or own is None:
+    together, odds = likely(finding.probability), finding.evidence.odds
+    if not any(name in odds for name in finding.alternatives):
         return together
-    return f"{likely(own)}; it or one of those below: {together}"
+    own = likely(odds.get(finding.effect.id, 0.0))
+    return f"{own}; it or one of those below: {together}"
 
 
 def _odds(answer: Explanation) -> list[str]:

@@ -51,6 +51,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
             shown.append(f"  or, each with {likely(0.0)} here: {listed(faint, 'or')}")
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
         shown += value_lines(own, hidden) if len(own) <= FEW else []
+        shown += [f"  {said}" for said in answer.only_together(item)]
     shown += (*answer.sums(), *answer.shares())
     whole = np.isfinite(answer.steps[-1].heldout_distance)
     rows = [

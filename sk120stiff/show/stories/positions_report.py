@@ -63,6 +63,7 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
     named = [
         f"{sentence_in(answer.final.model, item.effect)} (`{item.effect.id}`) "
         f"{answer.chance_of(item)}; {answer.taken_off(item, ' of the held-out gap')}."
+        + "".join(f" {said}" for said in answer.only_together(item))
         + _not_told(answer, item)
         + (f" By no pose told from: {', '.join(item.untold)}." if item.untold else "")
         + (f" Always the same in such readings: {', '.join(same)}." if (same := item.same) else "")

@@ -9,9 +9,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from scipy import stats
+
 from sk120stiff.effects import Effect
 from sk120stiff.errors import two_digits
 from sk120stiff.explain.findings import Contender, Detectable, likely
+from sk120stiff.explain.judge.budget import internal_covariance
 from sk120stiff.explain.positions.advise.other_poses import NextPoses
 from sk120stiff.explain.positions.judge.accounts import GapStep, HeldOutFile
 from sk120stiff.explain.positions.judge.budget import budget_of
@@ -28,6 +32,7 @@ if TYPE_CHECKING:
 
 SURE = 0.95  # probability of a name that is settled
 HARDLY = 0.01  # probability of an alternative below which it has no line of its own
+SEEN = 2.0  # standard errors from which on a value is known by itself
 LEAST = 5e-4  # share of the gap that is nothing
 ROUNDED = 0.01  # of a sum of probabilities that are told by two digits each
 APART = 0.05  # share by which the gap to first order may be another than the exact one, untold
@@ -180,7 +185,7 @@ class Explained:
     def rival(self, item: Named, other: str) -> str:
         """Why one of the alternatives stands beside a name, and how probable it is."""
         own, its = (self.probabilities.get(name, 0.0) for name in (item.effect.id, other))
-        more = ", more than of the one that model.yaml has" if its > own else ""
+        more = ", more than of the one that model.yaml has" if its > own + ROUNDED else ""
         return f"{item.kind_of(other)}; {likely(its)}{more}"
 
     def sums(self) -> tuple[str, ...]:
@@ -216,11 +221,38 @@ class Explained:
             return f"{said} together with errors of geometry, from which its size is not told"
         if own and all(at for _, at in own):
             return f"alone {said}; beside the others its value comes out as nothing"
+        weighed, rest = "", item.gain.share
+        if self.final.problem.common and item.share < LEAST < rest:
+            less = f"{100 * rest:.1f} % less is left"
+            weighed = f", though {less} as readings weigh that share a pose's error"
         if abs(item.share) < LEAST:
-            return f"takes nothing off{of} beside the others"
+            return f"takes nothing off{of} beside the others{weighed}"
         if item.share < 0.0:
-            return f"beside the others adds {-100 * item.share:.1f} %{of}"
+            return f"beside the others adds {-100 * item.share:.1f} %{of}{weighed}"
         return said
+
+    def only_together(self, item: Named) -> tuple[str, ...]:
+        """What is known of a name none of whose values is known by itself, in a sentence."""
+        final, hidden = self.final, unseen(self.final)
+        own = [
+            k
+            for k, p in enumerate(final.model.parameters)
+            if p.effect == item.effect and p.free and p.name not in hidden
+        ]
+        values = final.model.values[own]
+        covariance = internal_covariance(final)[np.ix_(own, own)]
+        errors = np.sqrt(np.diag(covariance))
+        if not own or not errors.all() or (np.abs(values) > SEEN * errors).any():
+            return ()
+        square = float(values @ np.linalg.pinv(covariance, hermitian=True) @ values)
+        chance = float(stats.chi2.sf(square, len(own)))
+        if chance < LEVEL:
+            known = f"together they are (χ² = {square:.3g} on {len(own)} numbers)"
+            return (f"None of its values is known by itself, but {known}.",)
+        return (
+            "Its size is not told beside all that is fitted here: what speaks for the name is what "
+            "it takes off at poses left out.",
+        )
 
     def shares(self) -> tuple[str, ...]:
         """Why shares of several names add up to more than all, in a sentence."""
