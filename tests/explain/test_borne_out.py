@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 from sk120stiff.explain.answer.document import borne_out_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.words import held_out_words
+from sk120stiff.explain.findings import Step
 from sk120stiff.explain.judge.borne_out import BorneOut, shown
 from tests.explain.test_words import Answered
 
@@ -113,3 +115,22 @@ def test_without_masses_a_balancer_may_be_weight_on_a_gear() -> None:
     assert "gravity_compensator:j2 stands for a stiffness that goes with the posture." in said
     assert "the arm's own weight on a gear of j2 that is not linear brings the same" in said
     assert "gravity_compensator" not in next_step(balancer(120.0))
+
+
+@pytest.mark.parametrize(("foretold", "trusted"), [(2e-5, True), (3.28e-4, False)])
+def test_springs_of_two_poses_are_not_used_as_they_are(
+    monkeypatch: pytest.MonkeyPatch, foretold: float, trusted: bool
+) -> None:
+    """Nothing is missing where two poses fit, and one foretells the other by twenty times worse."""
+    module = importlib.import_module("sk120stiff.explain.answer.next_step")
+    monkeypatch.setattr(module, "nothing", lambda _answer: 0.9)
+    answer = Answered(
+        verdict="none", understated=None, steps=(Step("joint_springs", 1.68e-5, foretold),),
+        significant=False, goes_with=None,
+    )  # fmt: skip
+    said = next_step(answer)
+    assert ("Use model.yaml as it is." in said) == trusted
+    assert ("16.8 µm rms per axis, but without one of them it foretells it to 328 µm" in said) != (
+        trusted
+    )
+    assert bool(held_out_words(answer)) != trusted

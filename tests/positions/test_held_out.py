@@ -12,8 +12,10 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.cli.positions import _parts
+from sk120stiff.explain.judge.borne_out import BorneOut
+from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.explained import Explained
-from sk120stiff.explain.positions.answer.next_step import headline
+from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
 from sk120stiff.explain.positions.judge.accounts import numbers_told
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import calibrate
@@ -145,3 +147,18 @@ def findings_of(found: Any) -> list[str]:
 
     sizes, unit = (1e-5, 5e-6, 2e-5), found.problem.rms_unit
     return [gap_sentence(found), *(in_words(sizes, unit, stated=way) for way in (True, False))]
+
+
+def test_a_file_that_speaks_against_the_names_does_so_in_the_headline(answer: Explained) -> None:
+    assert "does not bear" not in headline(answer)
+    assert answer.heldout is not None
+    kept = f"at the readings of readings.csv by {1e6 * answer.heldout.rms:.4g}"
+    assert kept in next_step_of_positions(answer)
+    against = BorneOut("other.csv", 5.0e-3, 4.0e-3, -0.57, 0.39, 9)
+    told = replace(answer, heldout=replace(answer.heldout, borne_out=against))
+    assert "; other.csv does not bear it out" in headline(told)
+    assert kept not in next_step_of_positions(told)
+    document = verdict_of_positions(told)
+    assert document["gap"]["borne_out"]["contradicted"] is True
+    assert document["holdout"]["rms_um"] == pytest.approx(1e6 * answer.heldout.rms)
+    assert verdict_of_positions(replace(answer, heldout=None))["holdout"] is None

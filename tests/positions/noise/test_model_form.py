@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,10 @@ from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.positions.answer.next_step import headline
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate, with_model_form
+from sk120stiff.identify.positions.noise.model_form import ModelForm
 from sk120stiff.identify.positions.residuals.remainder import (
     common_part,
+    left_beyond_noise,
     remainder_entry,
     remainder_sentences,
 )
@@ -132,6 +135,25 @@ def test_repeats_tell_noise_from_what_poses_have_of_their_own(tmp_path: Path) ->
     ]
     assert (std[1] < 0.6 * std[0]).all()  # as if poses were read anew each time
     assert (std[2] > 0.85 * std[0]).all() and (std[2] < 1.8 * std[0]).all(), std
+
+
+def test_what_is_smooth_is_a_part_of_what_poses_have_and_no_more_beside_it(
+    tmp_path: Path,
+) -> None:
+    """Three quarters of each pose's error are smooth: what is left is counted once."""
+    a = np.repeat(poses(24, 5), 4, axis=0)
+    own = 1e-4 * np.random.default_rng(1).normal(size=(24, 3))
+    x = noisy(Arm().stands(a)[0], 4) + np.repeat(own, 4, axis=0)
+    found = with_model_form(placed(tmp_path, a, x))
+    alone = common_part(found)
+    smooth = ModelForm(0.75, 12.0, 8.0, 1e-9, np.zeros(7), np.ones(6) / 6, 0.25)
+    both = replace(found, form=smooth)
+    left = left_beyond_noise(both)
+    assert left is not None and left[0] == alone[0]
+    assert left[1] < alone[1] and left[2] > alone[2]  # of what is smooth few numbers tell
+    said = " ".join(remainder_sentences(both))
+    assert said.count("µm rms per axis (95 %") == 1 and "part of it is smooth" in said
+    assert f"{1e6 * alone[0]:.3g} µm" in said
 
 
 def test_what_is_excluded_is_no_zero(tmp_path: Path) -> None:
