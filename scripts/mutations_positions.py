@@ -53,7 +53,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     *of(
         "explain/positions/answer/balancer.py", *tests("positions/explain", "balancer"),
         any_wave_is_a_balancer=("chance_of_gear(*_wave(effect, final)) >= SURE", "chance_of_gear(*_wave(effect, final)) >= 2.0"),
-        a_balancer_that_needs_no_telling=("item.gain, (name,))", "item.gain)"),
+        a_balancer_that_needs_no_telling=("exact=exact, untold=(name,))", "exact=exact)"),
         balancers_as_usual_as_gears=("BALANCED = USUAL", "BALANCED = 1.0 - USUAL"),
     ),
     *of(

@@ -45,11 +45,19 @@ def solve(problem: Problem, *, method: Method = "trf") -> Fit:
     return with_values(_likeliest_before(_as_fit(problem, found)))
 
 
-def solve_near(problem: Problem, x: Array) -> Fit:
+def solve_near(problem: Problem, x: Array, most: float = np.inf) -> Fit:
     """Solve a problem whose answer lies near scaled values `x` that are known.
 
     It is done when no estimate moves by more than 1e-5 of its error: of a model that is tried, no
     more is asked.
+
+    Args:
+        problem: What to solve.
+        x: (P_free,) values near the answer.
+        most: Misfit beyond which what is found is not the answer.
+
+    Raises:
+        Refusal: It does not converge, or leaves more than `most` by the readings alone.
     """
     calibrated = bool(np.isfinite(problem.usual).any())
     steps = VALLEY if calibrated else None
@@ -59,7 +67,7 @@ def solve_near(problem: Problem, x: Array) -> Fit:
         if not calibrated:
             raise
         found = _held_by_calibrations(problem, x)
-    return with_values(_likeliest_before(_as_fit(problem, passive(problem, found))))
+    return with_values(_likeliest_before(_as_fit(problem, passive(problem, found)), most))
 
 
 def _held_by_calibrations(problem: Problem, x: Array) -> Minimum:
@@ -68,14 +76,19 @@ def _held_by_calibrations(problem: Problem, x: Array) -> Minimum:
     return _polished_with(problem, x, np.diag(1.0 / problem.usual)[known])
 
 
-def _likeliest_before(fit: Fit) -> Fit:
+def _likeliest_before(fit: Fit, most: float = np.inf) -> Fit:
     """Where readings hardly tell draws and errors of instruments, those that are likeliest before.
 
     A direction that is hardly seen at one place is not at another: on the way there what is known
     beforehand counts as readings of it. Draws that have become smaller tell more.
+
+    Raises:
+        Refusal: More than `most` is left by the readings alone.
     """
     problem = fit.problem
     for _ in range(ROUNDS):
+        if float(fit.residual @ fit.residual) > most:
+            raise Refusal("the fit ends where more is left than there is to be")
         known = fit.beforehand
         step = known.step(fit.x)
         if np.abs(known.slope @ step).max(initial=0.0) < NEAR:

@@ -215,7 +215,7 @@ def _fitted_with(base: Fit, effects: Sequence[Effect], near: Fit | None) -> Fit:
     for about in (None,) if near is None else (near, None):
         try:
             x, foretold = _start(problem, about)
-            found = solve_near(problem, x)
+            found = solve_near(problem, x, most=MORE * foretold)
         except Refusal:
             continue
         if _misfit(found.residual) <= MORE * foretold:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
+from sk120stiff.explain.findings import likely
 from sk120stiff.explain.options import Options
 from sk120stiff.explain.positions.advise.other_poses import elsewhere, never_told, next_poses
 from sk120stiff.explain.positions.answer.explained import Explained
@@ -83,7 +84,12 @@ def test_a_spring_and_the_torsion_of_a_link_along_its_axis_are_one(tmp_path: Pat
     item = told["joint_springs:j6"]
     assert "link_torsion:l5" in item.exact and item.kind_of("link_torsion:l5") == "always the same"
     assert item.settled and item.others == () and found.following is None
-    assert found.chance_of(item) == "P > 0.99"
+    own, together = found.chance_of(item).split("; it or one of those not told from it: ")
+    names = item.effect.id, *item.exact
+    assert together == "P > 0.99" and own == likely(found.probabilities[names[0]])
+    assert sum(found.probabilities[name] for name in names) == pytest.approx(
+        item.probability, abs=0.01
+    )
     effects = found.save(tmp_path / "out")["effects"]
     assert effects[1]["exact_aliases"] == list(item.exact) == effects[1]["alternatives"]
     assert "Always the same in such readings: " in found.report().html()
