@@ -64,20 +64,25 @@ def common_part(final: Calibration) -> Size:
     return best, low, high
 
 
-def rms_of_gap(final: Calibration) -> float:
-    """Rms of what the calibration leaves of the readings [m]."""
-    gap = final.problem.of_channels.undo(final.residual)[final.problem.counted]
-    return float(np.sqrt(np.mean(gap**2)))
-
-
 def left_beyond_noise(final: Calibration) -> Size | None:
-    """Rms per axis beyond the noise and its 95 % interval; None where nothing tells the two."""
+    """Rms per axis beyond the noise and its 95 % interval; None where nothing tells the two.
+
+    Of these readings it is no more than the gap; what was estimated took a part of it, which other
+    poses show, and the upper end holds.
+    """
     form, stated = final.form, final.problem.stated_sigma
-    if final.sigma_known and stated is not None:
-        return common_part(final) if final.problem.common else beyond(final, stated)
     if final.problem.common:
-        return common_part(final)
-    return None if form is None else smooth_part(final, form)
+        size = common_part(final)
+    elif final.sigma_known and stated is not None:
+        size = beyond(final, stated)
+    elif form is not None:
+        size = smooth_part(final, form)
+    else:
+        return None
+    gap = final.problem.of_channels.undo(final.residual)[final.problem.counted]
+    whole = float(np.sqrt(np.mean(gap**2)))
+    best, low, high = size
+    return min(best, whole), min(low, whole), high
 
 
 def chance_of_noise(final: Calibration) -> float | None:
@@ -172,11 +177,6 @@ def remainder_sentences(final: Calibration) -> list[str]:
         said.append(
             f"The readings of a pose have {best} {unit} (95 %: {low} to {high}) in common that no "
             f"law explains: {smooth if final.form is not None else ''}{own_course}"
-        )
-    if size[0] > (gap := rms_of_gap(final)):
-        said.append(
-            f"That is more than the gap of {1e6 * gap:.3g} {unit}, part of which the "
-            f"{final.estimated} values took that were fitted: other poses show it whole."
         )
     chance = chance_of_noise(final)
     alone = stated and not (final.form or final.problem.common or final.lacks)
