@@ -15,6 +15,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.data_checks.passive import compliances, passive
 from sk120stiff.effects import Effect, effect, load_cases_of
+from sk120stiff.errors import listed
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model, Parameter, joint_spring_model
 from sk120stiff.model.typical import TYPICAL
@@ -43,6 +44,8 @@ BEYOND = 1.3  # times softer or stiffer than usual for its size, from where on i
 BY_FAR = 2.0  # times the squares that springs must leave alone, for more to be needed
 WELL = 0.01  # share of all squares that they leave where they explain readings by themselves
 BROUGHT = ("base_rocking", "base_sliding", "tool_compliance")  # not of the arm's maker
+NEARBY = 3.0  # times beyond what is told, up to which an arm may just be another than most
+SOFTER, STIFFER = (f"an arm that is {than} than most of its size" for than in ("softer", "stiffer"))
 MOST_UNITS = 6  # that are listed: a usual band spans two decades
 ALIKE = 0.3  # share of the readings' squares that one factor must explain to say anything
 UNITS = (
@@ -118,7 +121,8 @@ def scale_doubt(model: Model, measurements: Measurements) -> Scale | None:
     if times is None or (times > most and _of_what_was_brought(usual, measurements, most)):
         return None
     said = (
-        f"the springs of the base joints come out at about {middle / times:.2g} N*m/rad, "
+        f"the springs of {listed(robot.actuated[: 3 + len(rails)])} come out at about "
+        f"{middle / times:.2g} N*m/rad, "
         f"usual on an arm of {length:.2g} m are {softest:.2g} to {stiffest:.2g}"
     )
     return _doubt(said, times, middle / stiffest / BEYOND, most)
@@ -195,7 +199,9 @@ def _doubt(said: str, times: float, low: float, high: float) -> Scale | None:
         for unit, soft, stiff in UNITS
     }
     likely = [words for words in sorted(off, key=lambda w: off[w]) if off[words] < np.log(reach)]
-    guess = f" Likely: {'; or '.join(likely[:MOST_UNITS])}." if likely else ""
+    near = low / NEARBY < times < high * NEARBY
+    units = [*likely[:MOST_UNITS], *([SOFTER if softer else STIFFER] if near and likely else [])]
+    guess = f" {'Perhaps' if near else 'Likely'}: {'; or '.join(units)}." if units else ""
     return Scale(
         f"{said}: check the units of displacement and force.{guess} All springs together, the "
         "force's scale and the reading's scale are one number to these readings: which of them is "

@@ -9,7 +9,7 @@ import pytest
 from sk120stiff import load_robot
 from sk120stiff.data_checks import find_slip, look
 from sk120stiff.data_checks.efforts import efforts_doubt
-from sk120stiff.data_checks.scale import USUAL, usual_stiffness
+from sk120stiff.data_checks.scale import USUAL, _doubt, usual_stiffness
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import joint_spring_model
@@ -34,8 +34,21 @@ def test_without_known_springs_the_size_of_the_arm_speaks() -> None:
     assert look(known.model, known.readings).scale is None
     found = look(known.model, loads_as_if(known.readings, 9.807)).scale
     assert found is not None
-    assert "the springs of the base joints come out at about" in found.sentence
+    base = ", ".join(known.robot.actuated[:2]) + f" and {known.robot.actuated[2]}"
+    assert f"the springs of {base} come out at about" in found.sentence
     assert "forces in kgf labelled N" in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("times", "said"), [(12.0, "Perhaps: "), (40.0, "Likely: "), (1 / 12, "Perhaps: ")]
+)
+def test_a_little_beyond_what_is_usual_the_arm_may_be_another_than_most(
+    times: float, said: str
+) -> None:
+    found = _doubt("so", times, 0.1, 10.0)
+    assert found is not None and said in found.sentence
+    than = f"an arm that is {'softer' if times > 1.0 else 'stiffer'} than most of its size"
+    assert (than in found.sentence) == (said == "Perhaps: ")
 
 
 FIXED = '<joint name="world_joint" type="fixed">'
