@@ -86,3 +86,14 @@ def test_an_axis_that_fits_as_it_stands_has_no_slip(readings: Measurements):
     assert list(
         slips_of_rows(replace(readings, displacement=read), [ROW], told, LIMIT).values()
     ) == ["dx would fit with the other sign"]
+
+
+@pytest.mark.parametrize(("beside", "slipped"), [(0.3, True), (0.9, False)])
+def test_what_is_mended_fits_as_the_others_do(readings: Measurements, beside: float, slipped: bool):
+    """A row off on two axes is no slip of one of them because both lie just within the limit."""
+    read, told = (np.array(readings.displacement) for _ in range(2))
+    read[ROW, 0] *= -1.0
+    told[ROW, 0] += 0.9 * LIMIT  # what the model says beside what stood there
+    told[ROW, 1] += beside * LIMIT
+    found = slips_of_rows(replace(readings, displacement=read), [ROW], told, LIMIT)
+    assert (ROW in found) == slipped
