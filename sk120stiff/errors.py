@@ -141,6 +141,17 @@ def two_digits(value: float) -> str:
     return f"{value:.0f}" if 99.5 <= abs(value) < 1e5 else f"{value:.2g}"
 
 
+def micro(value: float, digits: int = 3) -> str:
+    """Millionths, as µm of metres: so many significant digits, and no power of ten.
+
+    >>> micro(1.2345e-4), micro(1.7712e-3), micro(1.7124e-2, 4)
+    ('123', '1771', '17124')
+    """
+    millionths = 1e6 * value
+    large = abs(millionths) >= 10**digits - 0.5
+    return f"{millionths:.0f}" if large else f"{millionths:.{digits}g}"
+
+
 def to_one_place(error: float | None, *values: float) -> list[str]:
     """Values, and last their standard error, all to the decimal place of its second digit.
 

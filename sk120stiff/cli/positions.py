@@ -12,7 +12,7 @@ from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.values import value_lines
 from sk120stiff.effects import LinearElastic
-from sk120stiff.errors import listed
+from sk120stiff.errors import listed, micro
 from sk120stiff.explain import Explained
 from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.findings import likely, sentence_in
@@ -65,7 +65,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
     shown.append(table(title, columns, rows))
     shown += answer.not_counted()
     if answer.families:
-        told = ", ".join(f"{name} {1e6 * share:.3g}" for name, share in answer.families.items())
+        told = ", ".join(f"{name} {micro(share)}" for name, share in answer.families.items())
         shown.append(f"What each takes off beside the others [{unit}]: {told}.")
     at = "At the measured loads" if answer.displaced else "At the measured poses"
     shown += budget_tables_of(

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import micro
 from sk120stiff.identify import Fit, Problem
 from sk120stiff.measurements import Measurements
 
@@ -48,7 +49,7 @@ class BorneOut:
 
     def sentence(self, unit: str = "µm rms per axis") -> str:
         """Both gaps, and what of the names is there."""
-        gaps = f"{1e6 * self.gap:.4g} {unit}, without them by {1e6 * self.without:.4g}"
+        gaps = f"{micro(self.gap, 4)} {unit}, without them by {micro(self.without, 4)}"
         return (
             f"At the readings of {self.file} the model with these names is off by {gaps}: of what "
             f"they add there {self.share:.2g} ± {self.std:.2g} is seen where it should be 1, so "
@@ -57,7 +58,7 @@ class BorneOut:
 
     def advice(self, unit: str = "µm") -> str:
         """What to do about it."""
-        gap, without = f"{1e6 * self.gap:.4g} {unit}", f"{1e6 * self.without:.4g}"
+        gap, without = f"{micro(self.gap, 4)} {unit}", f"{micro(self.without, 4)}"
         return (
             f"At the readings of {self.file} the model is off by no less with these names ({gap}) "
             f"than without ({without}): the names, or their sizes, do not hold there. Use "

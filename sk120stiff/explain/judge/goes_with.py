@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.errors import micro
+
 ALL_OF_IT = "nothing is left beyond the noise"
 NOT_FORETOLD = "that is where it shows, but how it goes on there is not known"
 
@@ -30,9 +32,9 @@ class Foretold:
 
     def sentence(self) -> str:
         """Both gaps, and that what does no better is no law."""
-        both = f"to {1e6 * self.gap:.3g} µm rms per axis with it"
+        both = f"to {micro(self.gap)} µm rms per axis with it"
         but = "" if self.better else f": {NOT_FORETOLD}"
-        return f"{self.what} foretold {both} and to {1e6 * self.without:.3g} without{but}."
+        return f"{self.what} foretold {both} and to {micro(self.without)} without{but}."
 
 
 def foretold(what: str, gap: float, without: float) -> Foretold | None:
@@ -71,7 +73,7 @@ class GoesWith:
     def sentences(self) -> tuple[str, ...]:
         """Where the remainder lives, and whether other readings bear it out."""
         beside = "with that beside the names" if self.beside_names else "with that in the model"
-        left = f"{1e6 * self.left:.3g} µm rms per axis are left beyond the noise"
+        left = f"{micro(self.left)} µm rms per axis are left beyond the noise"
         part = "It" if self.whole else "Most of it" if self.most else "Part of it"
         said = f"{part} goes with {self.suspect}: {beside}, {ALL_OF_IT if self.whole else left}."
         return (said,) if self.foretold is None else (said, self.foretold.sentence())

@@ -9,7 +9,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Elastic, Viewpoint
-from sk120stiff.errors import listed
+from sk120stiff.errors import listed, micro
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.acting_alike import acting_alike
 from sk120stiff.identify.positions.residuals.line_of_sight import by_line_of_sight
@@ -60,9 +60,9 @@ def gap_sentence(found: Calibration) -> str:
     problem = found.problem
     distances, angles = found.distances, angle_gap(found)
     sizes = [
-        *([f"{1e6 * found.rms:.3g} {problem.rms_unit}"] if len(problem.lengths) else []),
-        *([f"{1e6 * distances.mean():.3g} µm mean distance"] if len(distances) else []),
-        *([f"{1e6 * np.sqrt(np.mean(angles**2)):.3g} µrad rms of angles"] if len(angles) else []),
+        *([f"{micro(found.rms)} {problem.rms_unit}"] if len(problem.lengths) else []),
+        *([f"{micro(distances.mean())} µm mean distance"] if len(distances) else []),
+        *([f"{micro(np.sqrt(np.mean(angles**2)))} µrad rms of angles"] if len(angles) else []),
     ]
     said = (
         f"Gap {', '.join(sizes)}, over {len(problem.rows)} numbers of "
@@ -74,13 +74,13 @@ def gap_sentence(found: Calibration) -> str:
         of = "" if whole else f" of {listed(unstated)}"
         said += f" No uncertainty{of} is stated; "
         if problem.common and len(problem.lengths):
-            noise = f"{1e6 * noise_of(found):.3g} {problem.rms_unit}"
+            noise = f"{micro(noise_of(found))} {problem.rms_unit}"
             said += f"what differs between the readings of a pose tells it: {noise}."
         else:
             said += "the gap itself is taken for it."
             again = pure_error(found)
             if again is not None:
-                size = f"{1e6 * again.sigma:.3g} {problem.unit}"
+                size = f"{micro(again.sigma)} {problem.unit}"
                 said += (
                     f" Repeats of one pose and load tell {size} for one reading ({again.freedom} "
                     "degrees of freedom): state that, and what is left beyond it is told."

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.effects import Effect
-from sk120stiff.errors import two_digits
+from sk120stiff.errors import micro, two_digits
 from sk120stiff.explain.findings import Contender, Detectable, likely
 from sk120stiff.explain.judge.budget import internal_covariance
 from sk120stiff.explain.positions.advise.other_poses import NextPoses
@@ -285,7 +285,7 @@ class Explained:
             unit = self.final.problem.unit
             said.append(
                 "Step by step the gap is told to first order, with values drawn towards what is "
-                f"plausible; fitted exactly the last model leaves {1e6 * exact:.4g} {unit}."
+                f"plausible; fitted exactly the last model leaves {micro(exact, 4)} {unit}."
             )
         return tuple(said)
 

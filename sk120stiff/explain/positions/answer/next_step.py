@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sk120stiff.errors import micro
 from sk120stiff.explain.findings import likely
 from sk120stiff.explain.judge.borne_out import BorneOut, name_of
 from sk120stiff.explain.positions.answer.balancer import tell_apart
@@ -82,8 +83,8 @@ def next_step_of_positions(answer: Explained) -> str:
         use += f" where {before} alone is off by {first:.4g} {unit}"
     if (kept := answer.heldout) is not None:
         use += (
-            f"; at the readings of {name_of(kept.readings)} by {1e6 * kept.rms:.4g} "
-            f"(registered alone {1e6 * kept.registered:.4g}) {unit}"
+            f"; at the readings of {name_of(kept.readings)} by {micro(kept.rms, 4)} "
+            f"(registered alone {micro(kept.registered, 4)}) {unit}"
         )
     held = _contradicted(answer)
     said = [f"{use}." if held is None else held.advice(unit)]
@@ -92,12 +93,12 @@ def next_step_of_positions(answer: Explained) -> str:
     most = next((share for share in answer.budget if share.name in named), None)
     if answer.displaced and most is not None:
         said.append(
-            f"Of what was named {most.name} moves the point most, {1e6 * most.rms:.4g} µm rms per "
+            f"Of what was named {most.name} moves the point most, {micro(most.rms, 4)} µm rms per "
             "axis: look there first if the arm is to be mended."
         )
     elif answer.families and not answer.displaced:
         largest = max(answer.families, key=lambda name: answer.families[name])
-        share = f"{1e6 * answer.families[largest]:.4g} {unit}"
+        share = f"{micro(answer.families[largest], 4)} {unit}"
         said.append(
             f"What takes off most is {largest}, {share}: look there first if the arm is to be "
             "mended."
@@ -115,13 +116,13 @@ def next_step_of_positions(answer: Explained) -> str:
         said += tell_apart(answer.findings)
     if answer.guess is not None and answer.guess_heldout < answer.steps[-1].heldout_rms:
         said.append(
-            f"best_guess.yaml is off by {1e6 * answer.guess_heldout:.4g} {unit} there: nearer, for "
+            f"best_guess.yaml is off by {micro(answer.guess_heldout, 4)} {unit} there: nearer, for "
             "reasons that are not confirmed."
         )
     if answer.whole is not None:
         said.append(
             "To compensate, all errors of geometry and springs together, none of them named, are "
-            f"nearer: off by {1e6 * answer.whole:.4g} {unit} there. 'sk120stiff identify DATA "
+            f"nearer: off by {micro(answer.whole, 4)} {unit} there. 'sk120stiff identify DATA "
             "--out calibrated.yaml' fits them all."
         )
     if answer.verdict == "outside":
@@ -130,7 +131,7 @@ def next_step_of_positions(answer: Explained) -> str:
         )
     again = pure_error(answer.final)
     if answer.remainder is None and again is not None:
-        size = f"{1e6 * again.sigma:.3g}"
+        size = micro(again.sigma)
         length, angle = f"sigma: {size}, unit: um", f"rotation: {size}, rotation_unit: urad"
         own = length if unit == "µm" else angle
         said.append(

@@ -10,7 +10,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import Geometric, LoadError, Weighing
-from sk120stiff.errors import listed
+from sk120stiff.errors import listed, micro
 from sk120stiff.explain.findings import Contender, Step
 from sk120stiff.explain.judge.borne_out import BorneOut, name_of, shown
 from sk120stiff.explain.positions.select.candidates import COMPLIANCE, family
@@ -63,15 +63,15 @@ class HeldOutFile:
     def sentence(self, problem: PoseProblem) -> str:
         """How far they are off, and which rows are not counted."""
         readings, rows = self.readings, np.flatnonzero(self.set_aside)
-        said = f"Held-out file: {1e6 * self.rms:.3g} {problem.rms_unit}"
+        said = f"Held-out file: {micro(self.rms)} {problem.rms_unit}"
         if np.isfinite(self.distance):
-            said += f", {1e6 * self.distance:.3g} µm mean distance"
-        said += f"; the registered arm alone: {1e6 * self.registered:.4g} {problem.unit}"
+            said += f", {micro(self.distance)} µm mean distance"
+        said += f"; the registered arm alone: {micro(self.registered, 4)} {problem.unit}"
         if len(rows):
             lines = [f"line {readings.line[k]} (pose {readings.pose[k]})" for k in rows]
             lie = "1 row that lies" if len(rows) == 1 else f"{len(rows)} rows that lie"
             said += f". Not counted: {lie} far off all others, {listed(lines, most=LISTED)}; with "
-            said += f"{'it' if len(rows) == 1 else 'them'} {1e6 * self.rms_of_all:.3g} "
+            said += f"{'it' if len(rows) == 1 else 'them'} {micro(self.rms_of_all)} "
             said += problem.unit
         parts = [f"{said}."]
         if self.borne_out is not None and self.borne_out.contradicted:

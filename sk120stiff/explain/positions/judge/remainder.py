@@ -26,7 +26,13 @@ def where_it_lives(
     square = seen.problem.of_channels.undo(gap)[counted] ** 2
     size = np.sqrt(np.bincount(linear.row[counted], square, minlength=len(rows)))
     worst = np.argsort(-size)[:LARGEST]
-    places = ", ".join(f"{readings.pose[rows[k]]} ({1e6 * size[k]:.0f} {unit})" for k in worst)
+    markers = () if readings.absolute is None else readings.absolute.markers
+    several = len(set(markers)) > 1
+    places = ", ".join(
+        f"{readings.pose[rows[k]]}{f' marker {markers[rows[k]]}' if several else ''} "
+        f"({1e6 * size[k]:.0f} {unit})"
+        for k in worst
+    )
     said = [f"The largest gaps left at poses left out: {places}."]
     form = seen.form
     if form is not None and form.by_joint.max() > MOSTLY:

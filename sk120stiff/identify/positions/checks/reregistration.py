@@ -12,6 +12,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects import LoadCases, Viewpoint, load_cases_of
+from sk120stiff.errors import micro
 from sk120stiff.identify.positions.checks.parts import FAR, by_stations
 from sk120stiff.identify.positions.solve.start import REGISTERED, options_of
 from sk120stiff.measurements import Measurements
@@ -55,10 +56,10 @@ class PlacedAnew:
         what = "The tracker" + (" and the marker" if self.marker else "")
         told = (
             f": {1e3 * self.before:.4g} mm are left (median) where the fit had "
-            f"{'them' if self.marker else 'it'}, {1e6 * self.after:.3g} µm where these readings do."
+            f"{'them' if self.marker else 'it'}, {micro(self.after)} µm where these readings do."
             if np.isfinite(self.before)
             else ": the model knows nothing of this station, which is found from these readings "
-            f"({1e6 * self.after:.3g} µm are left in the median)."
+            f"({micro(self.after)} µm are left in the median)."
         )
         verb = "sit elsewhere" if self.marker else "stands elsewhere"
         return (

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from sk120stiff.errors import micro
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.noise.model_form import ModelForm
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
@@ -172,7 +173,7 @@ def remainder_sentences(final: Calibration) -> list[str]:
             f"The readings of a pose have it in common, and no law explains it: {own_course}"
         )
     elif final.problem.common:
-        best, low, high = (f"{1e6 * x:.3g}" for x in size)
+        best, low, high = map(micro, size)
         smooth = "part of it is smooth over the joints, as an error of the model is, and "
         said.append(
             f"The readings of a pose have {best} {unit} (95 %: {low} to {high}) in common that no "
@@ -192,7 +193,7 @@ def remainder_sentences(final: Calibration) -> list[str]:
 
 def in_words(size: Size, unit: str, *, stated: bool) -> str:
     """How much is left beyond the noise, in a sentence; `unit` as `PoseProblem.rms_unit`."""
-    best, low, high = (f"{1e6 * x:.3g}" for x in size)
+    best, low, high = map(micro, size)
     if not stated:
         return (
             f"What is left is mostly smooth over the joints, as an error of the model is and noise "
