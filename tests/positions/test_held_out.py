@@ -152,11 +152,14 @@ def findings_of(found: Any) -> list[str]:
 def test_a_file_that_speaks_against_the_names_does_so_in_the_headline(answer: Explained) -> None:
     assert "does not bear" not in headline(answer)
     assert answer.heldout is not None
-    kept = f"at the readings of readings.csv by {1e6 * answer.heldout.rms:.4g}"
+    kept = f"at the readings of readings.csv by {1e6 * answer.heldout.rms:.4g} (without what was"
     assert kept in next_step_of_positions(answer)
     against = BorneOut("other.csv", 5.0e-3, 4.0e-3, -0.57, 0.39, 9)
     told = replace(answer, heldout=replace(answer.heldout, borne_out=against))
-    assert "; other.csv does not bear it out" in headline(told)
+    assert "; but other.csv speaks against the model with what was named" in headline(told)
+    far = replace(answer, heldout=replace(answer.heldout, rms=5.0 * answer.heldout.rms))
+    assert "much more than these readings foretell" in next_step_of_positions(far)
+    assert "much more" not in next_step_of_positions(answer)
     assert kept not in next_step_of_positions(told)
     document = verdict_of_positions(told)
     assert document["gap"]["borne_out"]["contradicted"] is True

@@ -114,7 +114,7 @@ def _none(answer: Explanation) -> list[str]:
     left = answer.adequacy
     if left.chance is None:
         return [f"Before anything is concluded, state the noise or {REPEATS}, and run this again."]
-    if left.understated is not None:
+    if left.understated is not None and not worse_elsewhere(answer):
         return [*_of_the_noise(answer), "The model itself may be used as it is."]
     if nothing(answer) < EVEN:
         return [
@@ -125,10 +125,11 @@ def _none(answer: Explanation) -> list[str]:
         last = answer.steps[-1]
         fitted, foretold = microns(last.fit_rms), microns(last.heldout_rms)
         return [
+            *_of_the_noise(answer),
             f"Use model.yaml at poses like those measured: it fits them to {fitted} rms per axis, "
             f"but without one of them it foretells it to {foretold}, so they are too few, or too "
             "unlike, to say much of others. Measure at more poses, append the readings to the file "
-            "and run this again."
+            "and run this again.",
         ]
     return [
         "Use model.yaml as it is.",

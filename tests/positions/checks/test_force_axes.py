@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +13,14 @@ from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.explain.positions.answer.explained import Explained
-from sk120stiff.identify.positions.checks.beside_frames import square_within
+from sk120stiff.identify.positions.calibrate import calibrate
+from sk120stiff.identify.positions.checks import force_axes
+from sk120stiff.identify.positions.checks.beside_frames import (
+    BesideFrames,
+    beside_frames,
+    square_within,
+)
+from sk120stiff.identify.positions.checks.force_axes import refuse_other_forces
 from tests.positions.arm import Arm, poses, tracked, write
 from tests.positions.loaded_arm import MARKERS, SPRINGS, rests
 
@@ -81,6 +90,24 @@ def test_forces_that_are_right_or_nearly_so_are_not(tmp_path: Path, turn: float)
     names = {item.effect.id for item in found.findings}
     assert {f"joint_springs:j{k}" for k in (2, 3)} <= names
     assert ("force_rotation:sensor" in names) == (turn != 0.0)
+
+
+def test_forces_are_not_taken_otherwise_for_springs_that_no_drive_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Told otherwise they fit by the arm's springs; of stiffer gears they would not."""
+    data = sk.read(pulled(tmp_path, "base", -1.0, 0.0, "base"))
+    robot = sk.load_robot(data.robot, base="base", tool="tool")
+    found = calibrate(sk.Model(robot), data, geometry=False, waves=False)
+    with pytest.raises(sk.InputError, match="the other sign"):
+        refuse_other_forces(found, data)
+
+    def of_stiff_gears(*given: Any) -> BesideFrames:
+        sag = beside_frames(*given)
+        return replace(sag, softest=1e-6 * sag.softest)
+
+    monkeypatch.setattr(force_axes, "beside_frames", of_stiff_gears)
+    refuse_other_forces(found, data)
 
 
 def test_springs_softer_than_any_drive_explain_nothing() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.explain.options import Options
@@ -15,8 +16,8 @@ from sk120stiff.identify.positions.calibrate import Calibration, calibrate
 from sk120stiff.identify.positions.solve.pose_errors import Common, PoseWhitening, common_error
 from sk120stiff.identify.positions.words import noise_of
 from sk120stiff.model import Model
-from tests.positions.arm import Arm, Array, errors
-from tests.positions.shared import OFF, SIGMA, campaign
+from tests.positions.arm import NAMES, Arm, Array, errors, poses, tracked, write
+from tests.positions.shared import FIT, OFF, PLACES, SIGMA, campaign
 
 
 def drawn(seed: int, count: int = 12) -> tuple[PoseWhitening, Array]:
@@ -129,6 +130,30 @@ def test_the_first_row_of_the_gap_is_the_arm_registered_by_least_squares(tmp_pat
     assert answer.findings and answer.final.problem.common > 0.0
     left = np.sqrt(np.mean(answer.base.distances**2) / 3.0)
     assert answer.steps[0].fit_rms == pytest.approx(left, rel=0.01)
+
+
+@pytest.mark.parametrize("turned", [0.0, 4e-4])  # rad
+def test_a_tool_that_turns_of_its_own_is_weighed_so(tmp_path: Path, turned: float) -> None:
+    """Of a soft wrist turns say little; counted as joints turn it they would draw all else."""
+    a, rng = poses(40, 3), np.random.default_rng(3)
+    q = a + OFF * rng.normal(size=a.shape)
+    turns = Rotation.from_rotvec(turned * rng.normal(size=(40, 3)))
+    origin, axes = replace(Arm(), marker=np.zeros(3)).stands(q)[:2]
+    x = np.concatenate(
+        [origin + np.einsum("nij,nj->ni", axes, turns.apply(PLACES[name])) for name in "ABC"]
+    )
+    x = tracked(x + SIGMA * rng.normal(size=x.shape))
+    cells = [f"{name},p{k}" for name in "ABC" for k in range(len(a))]
+    path = write(tmp_path, np.tile(a, (3, 1)), x, FIT, more=",marker,pose", cells=cells)
+    m = sk.read(path).with_joints(NAMES)
+    model = Model(sk.load_robot(m.robot, base="base", tool="tool"))
+    found = calibrate(model, m, geometry=False, waves=False).problem
+    assert found.common > 0.0
+    assert (found.turning > 3.0) if turned else (found.turning == 1.0)
+    ways, own = found.of_channels.ways, found.by_pose
+    assert ways is not None
+    np.testing.assert_allclose(ways[:, :3], own[:, :3])
+    np.testing.assert_allclose(ways[:, 3:], found.turning * own[:, 3:])
 
 
 def springs(found: Calibration) -> tuple[Array, Array]:

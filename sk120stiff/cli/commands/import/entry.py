@@ -218,10 +218,6 @@ def command(
     return Answer(document, parts)
 
 
-def _place(text: str) -> Array:
-    return parse_values(text, "length", where="--payload-point", like="0,0,120 mm")
-
-
 def _names(text: str | None) -> tuple[str, ...] | None:
     return None if text is None else tuple(name.strip() for name in text.split(","))
 

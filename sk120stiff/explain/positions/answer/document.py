@@ -56,7 +56,9 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
             "noise_floor": None if stated is None else stated * 1e6,
             "p": answer.chance,
             "set_aside": int(final.wild.sum()),
-            "borne_out": borne_out_document(None if held is None else held.borne_out),
+            "borne_out": borne_out_document(
+                None if held is None or not lengths else held.borne_out
+            ),
             "steps": [
                 {**step_entry(step), "heldout_mean_distance": micrometres(step.heldout_distance)}
                 for step in answer.steps
@@ -104,7 +106,7 @@ def verdict_of_positions(answer: Explained) -> dict[str, Any]:
 def _held_out(found: HeldOutFile, problem: PoseProblem) -> dict[str, Any]:
     """How far the held-out readings are off."""
     readings, rows = found.readings, np.flatnonzero(found.set_aside)
-    ending = "um" if problem.unit == "µm" else "urad"
+    ending = "um" if found.unit(problem) == "µm" else "urad"
     return {
         f"rms_{ending}": found.rms * 1e6,
         "mean_distance_um": found.distance * 1e6 if np.isfinite(found.distance) else None,
@@ -171,6 +173,7 @@ def _effect(
             "folds_improved": item.gain.folds,
             "folds": answer.linear.folds,
             "heldout_gain": item.share,
+            "heldout_gain_weighed": item.gain.share,
             "heldout_gain_errors": item.gain.errors,
             "log_evidence": item.gain.evidence,
         },

@@ -223,8 +223,10 @@ class Explained:
             return f"alone {said}; beside the others its value comes out as nothing"
         weighed, rest = "", item.gain.share
         if self.final.problem.common and item.share < LEAST < rest:
-            less = f"{100 * rest:.1f} % less is left"
-            weighed = f", though {less} as readings weigh that share a pose's error"
+            weighed = (
+                f"; it takes off {100 * rest:.1f} % where readings count less for what all of a "
+                "pose have in common"
+            )
         if abs(item.share) < LEAST:
             return f"takes nothing off{of} beside the others{weighed}"
         if item.share < 0.0:
@@ -234,25 +236,22 @@ class Explained:
     def only_together(self, item: Named) -> tuple[str, ...]:
         """What is known of a name none of whose values is known by itself, in a sentence."""
         final, hidden = self.final, unseen(self.final)
-        own = [
-            k
-            for k, p in enumerate(final.model.parameters)
-            if p.effect == item.effect and p.free and p.name not in hidden
+        free = [
+            k for k, p in enumerate(final.model.parameters) if p.effect == item.effect and p.free
         ]
+        own = [k for k in free if final.model.parameters[k].name not in hidden]
         values = final.model.values[own]
         covariance = internal_covariance(final)[np.ix_(own, own)]
         errors = np.sqrt(np.diag(covariance))
-        if not own or not errors.all() or (np.abs(values) > SEEN * errors).any():
+        known = np.abs(values) > SEEN * errors
+        if len(own) < 2 or not np.isfinite(errors).all() or not errors.all() or known.any():
             return ()
         square = float(values @ np.linalg.pinv(covariance, hermitian=True) @ values)
         chance = float(stats.chi2.sf(square, len(own)))
         if chance < LEVEL:
-            known = f"together they are (χ² = {square:.3g} on {len(own)} numbers)"
-            return (f"None of its values is known by itself, but {known}.",)
-        return (
-            "Its size is not told beside all that is fitted here: what speaks for the name is what "
-            "it takes off at poses left out.",
-        )
+            together = f"together they are (χ² = {square:.3g} on {len(own)} numbers)"
+            return (f"None of its values is known by itself, but {together}.",)
+        return ("None of its values is known beside all that is fitted here, nor all together.",)
 
     def shares(self) -> tuple[str, ...]:
         """Why shares of several names add up to more than all, in a sentence."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sk120stiff.errors import micro
 from sk120stiff.explain.findings import likely
 from sk120stiff.explain.judge.borne_out import BorneOut, name_of
@@ -30,7 +32,7 @@ def headline(answer: Explained) -> str:
     left = answer.final.form is not None or answer.lacking
     more = "; more is left than noise makes" if left else ""
     if (held := _contradicted(answer)) is not None:
-        more += f"; {held.file} does not bear it out"
+        more += f"; but {held.file} speaks against the model with what was named"
     open_ones = [item for item in answer.findings if not item.settled]
     count = len(answer.findings)
     if not open_ones:
@@ -67,6 +69,7 @@ def _one_of(answer: Explained, item: Named) -> str:
     return " or ".join((item.effect.id, *worth, *more))
 
 
+WORSE = 2.0  # times what poses left out foretell, from where on a hold-out file is a warning
 MOVED = (
     "Before anything else make sure that tracker, marker or joint moved in the middle of the file "
     "as it was taken (see what else was found): all that follows rests on it."
@@ -81,11 +84,13 @@ def next_step_of_positions(answer: Explained) -> str:
     if last < first:
         before = answer.steps[0].label if answer.displaced else "the registered arm"
         use += f" where {before} alone is off by {first:.4g} {unit}"
-    if (kept := answer.heldout) is not None:
-        use += (
-            f"; at the readings of {name_of(kept.readings)} by {micro(kept.rms, 4)} "
-            f"(registered alone {micro(kept.registered, 4)}) {unit}"
-        )
+    if (kept := answer.heldout) is not None and np.isfinite(kept.rms):
+        use += f"; at the readings of {name_of(kept.readings)} by {micro(kept.rms, 4)}"
+        if answer.findings:
+            use += f" (without what was named {micro(kept.registered, 4)})"
+        use += f" {kept.unit(answer.final.problem)}"
+        if kept.rms > WORSE * answer.steps[-1].heldout_rms:
+            use += ", much more than these readings foretell: trust it no farther than them"
     held = _contradicted(answer)
     said = [f"{use}." if held is None else held.advice(unit)]
     said = [MOVED, *said] if answer.moved else said

@@ -60,8 +60,13 @@ class HeldOutFile:
     borne_out: BorneOut | None = None
     anew: str | None = None
 
+    def unit(self, problem: PoseProblem) -> str:
+        """µm or µrad, as these readings are counted by a problem of the model."""
+        return replace(problem, measurements=self.readings.masked()).unit
+
     def sentence(self, problem: PoseProblem) -> str:
         """How far they are off, and which rows are not counted."""
+        problem = replace(problem, measurements=self.readings.masked())
         readings, rows = self.readings, np.flatnonzero(self.set_aside)
         said = f"Held-out file: {micro(self.rms)} {problem.rms_unit}"
         if np.isfinite(self.distance):
@@ -93,7 +98,7 @@ class Account:
     """The gap [m] with named causes and without some of them.
 
     The model with all is taken as it is fitted: beside what the readings of a pose have in common.
-    One with fewer nobody fits so, since more would be in common beside it; it counts as it
+    Another one nobody fits so, since something else would be in common beside it; it counts as it
     foretells other poses better, so weighted or with every reading alike. The registered arm is
     placed by plain least squares.
 
@@ -186,7 +191,8 @@ class Account:
         springs = [e for e, effect in enumerate(candidates) if effect.joint_spring]
         if not springs or set(springs) & set(self.found.order):
             return None
-        return 1.0 - self.held_out((*self.found.order, *springs)) / max(self.left, 1e-300)
+        beside = self.held_out((*self.found.order, *springs), as_fitted=True)
+        return 1.0 - beside / max(self.left, 1e-300)
 
     def nearer_as_a_whole(self) -> float | None:
         """Rms at poses left out of all errors of geometry and all springs together.

@@ -41,13 +41,15 @@ class Posterior:
     def standing(self, e: int) -> dict[str, float]:
         """Probability of one of the chosen, and of each that explains as much in its place.
 
-        Together they have that of `names`; among themselves they share it as sets have it.
+        Each by itself: of all sets that hold it, as one of them at least has that of `names`. Where
+        two may be at work together they add up to more.
         """
         rivals, probability = self.names[e]
-        own = np.array([self.sets.with_any((c,)) for c in (e, *rivals)])
-        share = probability * own / max(own.sum(), 1e-300)
-        names = [self.linear.candidates[c].id for c in (e, *rivals)]
-        return dict(zip(names, map(float, share), strict=True))
+        held = probability / max(self.sets.with_any((e, *rivals)), 1e-300)
+        return {
+            self.linear.candidates[c].id: min(held * self.sets.with_any((c,)), 1.0)
+            for c in (e, *rivals)
+        }
 
     def likelier(self, found: Chosen, tried: Collection[frozenset[int]]) -> Chosen | None:
         """The likeliest set of no more names, where it is clearly likelier; None: there is none.

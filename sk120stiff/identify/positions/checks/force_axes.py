@@ -58,7 +58,7 @@ def refuse_other_forces(found: Calibration, readings: Measurements) -> None:
     left = np.array([sag.square(way.along(sag)) for way in ways])
     whole, freedom = float(sag.gap @ sag.gap), sag.freedom
     enough = HALF * min(left[0], whole)
-    for k in np.flatnonzero(left <= enough):
+    for k in np.flatnonzero(left <= AS_GOOD * enough):
         left[k] = sag.within(ways[k].along(sag))
     least = float(left.min())
     best = min((way for way, own in zip(ways, left, strict=True) if own <= AS_GOOD * least),

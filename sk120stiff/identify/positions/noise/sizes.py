@@ -43,8 +43,13 @@ def learned(found: Fit) -> dict[str, float]:
     return out
 
 
-def common_of(found: Fit) -> Common:
-    """What a pose has of its own, in what a fit leaves."""
+def common_of(found: Fit, *, anew: bool = True) -> Common:
+    """What a pose has of its own, in what a fit leaves.
+
+    Args:
+        found: The fit.
+        anew: Look for how far the tool turns beside its shift; else it is as the fit has it.
+    """
     problem = of_poses(found)
     times = np.bincount(problem.load_cases.pose)
     if (times > 1).sum() < TWICE:
@@ -53,9 +58,11 @@ def common_of(found: Fit) -> Common:
     return common_error(
         white.undo(found.residual),
         white.undo(found.jacobian[:, ~found.at_bound]),
-        PoseWhitening(white.sigma, problem.by_pose, problem.pose_of_channels),
+        PoseWhitening(
+            white.sigma, problem.by_pose if anew else problem.own_ways, problem.pose_of_channels
+        ),
         stated=found.sigma_known,
-        turns=problem.turns,
+        turns=problem.turns if anew else None,
     )
 
 

@@ -139,14 +139,17 @@ def common_error(
     turning_ways = np.zeros(ways.shape[1], dtype=bool) if turns is None else turns
     nothing, noise_alone = likelihood.of_noise()
 
-    def least(turning: float) -> Common:
-        """The likeliest τ beside a ρ."""
+    def least(turning: float, about: float | None = None) -> Common:
+        """The likeliest τ beside a ρ; `about` one where it is the likeliest beside another."""
         unlikely = likelihood.with_ways(np.where(turning_ways, turning, 1.0))
         grid = np.linspace(*RANGE, 13)
-        start = grid[int(np.argmin([unlikely(each)[0] for each in grid]))]
+        if about is None:
+            start, wide = grid[int(np.argmin([unlikely(each)[0] for each in grid]))], 1.0
+        else:
+            start, wide = float(np.log(about)), float(np.log(TURNS))
         best = minimize_scalar(
             lambda each: unlikely(each)[0],
-            bounds=(start - 1.0, start + 1.0), method="bounded", options={"xatol": 0.02},
+            bounds=(start - wide, start + wide), method="bounded", options={"xatol": 0.02},
         )  # fmt: skip
         noise = unlikely(best.x)[1]
         size = float(np.exp(best.x)) * noise
@@ -158,11 +161,12 @@ def common_error(
     if not turning_ways.any() or turning_ways.all():
         return found
     most = float(np.log(TURNS))
+    at = found.size / found.noise
     other = minimize_scalar(
-        lambda each: -least(float(np.exp(each))).gained,
+        lambda each: -least(float(np.exp(each)), at).gained,
         bounds=(-most, most), method="bounded", options={"xatol": 0.1},
     )  # fmt: skip
-    turned = least(float(np.exp(other.x)))
+    turned = least(float(np.exp(other.x)), at)
     return turned if turned.gained > found.gained + CLEAR else found
 
 

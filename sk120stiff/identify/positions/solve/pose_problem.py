@@ -109,8 +109,12 @@ class PoseProblem(Problem):
         sigma = self.sigma_of_channels
         if self.common == 0.0:
             return PoseWhitening(sigma)
-        ways = self.by_pose * np.where(self.turns, self.turning, 1.0)
-        return PoseWhitening(sigma, ways, self.pose_of_channels, self.common)
+        return PoseWhitening(sigma, self.own_ways, self.pose_of_channels, self.common)
+
+    @property
+    def own_ways(self) -> Array:
+        """(M, k) the ways of `by_pose` with the turn as large as it is beside the shift."""
+        return self.by_pose * np.where(self.turns, self.turning, 1.0)
 
     @property
     def pose_of_channels(self) -> Index:
