@@ -41,6 +41,15 @@ OF_POSITIONS: tuple[Fault, ...] = (
         a_smooth_error_of_what_does_not_yield=("    if not products:", "    if False:"),
     ),
     *of(
+        "identify/positions/solve/pose_errors.py", *tests("positions/noise", "pose_errors"),
+        any_turn_is_taken=("turned if turned.gained > found.gained + CLEAR else found", "turned"),
+        turns_count_as_joints_make_them=("np.where(turning_ways, turning, 1.0)", "np.where(turning_ways, 1.0, 1.0)"),
+    ),
+    *of(
+        "identify/positions/calibrate.py", *tests("positions/noise", "pose_errors"),
+        turns_that_no_fit_sees=("common, turning = told.size, told.turning\n        again", "common, turning = told.size, 1.0\n        again"),
+    ),
+    *of(
         "measurements/placing/levels.py", *tests("positions/checks", "levels"),
         gravity_the_other_way=("np.linalg.lstsq(A, -levels.sine", "np.linalg.lstsq(A, levels.sine"),
         one_wild_level_is_a_slip=("int((1.0 - WILD) * len(values))", "len(values)"),

@@ -21,6 +21,14 @@ OF_SETS: tuple[Fault, ...] = (
         anything_stands_instead=("likely = as_much & (both", "likely = (both"),
     ),
     *of(
+        "explain/positions/judge/accounts.py", *tests("positions/explain", "shares"),
+        nothing_is_weighed_alike=("for linear, white in ways[:1] if as_fitted else ways:", "for linear, white in ways[:1]:"),
+    ),
+    *of(
+        "explain/positions/run.py", *tests("positions/explain", "shares"),
+        shares_as_readings_weigh=("gain(linear, posterior.chosen, e), account.share(e)", "gain(linear, posterior.chosen, e), gain(linear, posterior.chosen, e).share"),
+    ),
+    *of(
         "explain/positions/select/linear.py", *tests("positions/explain", "sets"),
         scores_at_once_without_what_is_chosen=("own + np.linalg.slogdet(block / noise)[1]", "np.linalg.slogdet(block / noise)[1]"),
         signs_that_do_not_bind=("low[P:][self.positive] = 0.0", "low[P:][self.positive] = -np.inf"),
