@@ -310,7 +310,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "data_checks/single_rows.py", *tests("data_checks", "single_rows"),
-        slip_that_mends_one_axis_alone=("off.max() >= limit", "off.min() >= limit"),
+        slip_that_mends_one_axis_alone=("    if not len(off) or off.max() >= limit:\n", "    if len(off) and off.min() < limit:\n        return True\n    if not len(off) or off.max() >= limit:\n"),
         slip_that_leaves_all_axes_far_off=("TOGETHER * limit", "limit"),
         exchange_that_fits_one_way=("if all(_fits(read[a], told[b], limit)", "if any(_fits(read[a], told[b], limit)"),
     ),
