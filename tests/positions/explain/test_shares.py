@@ -59,9 +59,11 @@ def test_a_model_that_nobody_fits_counts_as_it_foretells_better(tmp_path: Path) 
         linear, Chosen(order, {}), found.final, numbers_told(found.final, found.final, m)
     )
     assert account.held_out(order) < account.left - 1e-6  # with every reading alike
-    before, after = (step.heldout_rms for step in found.steps[-2:])
+    steps = found.steps
     last = found.findings[-1]
-    assert last.share == pytest.approx(1.0 - after / before, rel=1e-9)
+    assert last.share == pytest.approx(1.0 - steps[-1].heldout_rms / steps[-2].heldout_rms)
+    grown = (*steps[:-1], replace(steps[-1], fit_rms=2.0 * steps[-2].fit_rms))
+    assert "So a gap may grow." in " ".join(replace(found, steps=grown).not_counted())
     assert abs(last.share - last.gain.share) > 0.01  # as readings weigh it is another number
 
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -285,6 +286,13 @@ class Explained:
             said.append(
                 "Step by step the gap is told to first order, with values drawn towards what is "
                 f"plausible; fitted exactly the last model leaves {micro(exact, 4)} {unit}."
+            )
+        if self.final.problem.common and any(
+            after.fit_rms > before.fit_rms for before, after in pairwise(self.steps)
+        ):
+            said.append(
+                "The last row weighs readings less for what all of a pose have in common; others, "
+                "which nobody fits, as they foretell other poses better. So a gap may grow."
             )
         return tuple(said)
 
