@@ -87,9 +87,9 @@ def test_a_spring_and_the_torsion_of_a_link_along_its_axis_are_one(tmp_path: Pat
     own, together = found.chance_of(item).split("; it or one of those not told from it: ")
     names = item.effect.id, *item.exact
     assert together == "P > 0.99" and own == likely(found.probabilities[names[0]])
-    assert sum(found.probabilities[name] for name in names) == pytest.approx(
-        item.probability, abs=0.01
-    )
+    chances = [found.probabilities[name] for name in names]  # both may be at work, if seldom
+    assert max(chances) <= item.probability + 1e-9
+    assert item.probability - 1e-9 <= sum(chances) < item.probability + 0.05
     effects = found.save(tmp_path / "out")["effects"]
     assert effects[1]["exact_aliases"] == list(item.exact) == effects[1]["alternatives"]
     assert "Always the same in such readings: " in found.report().html()
@@ -116,7 +116,7 @@ def test_next_poses_tell_what_the_first_ones_left_open(tmp_path: Path) -> None:
     names = {both[0].effect.id, *both[0].alternatives}
     assert set(following.between) <= names and "joint_springs:j2" in names
     shares = [first.probabilities[name] for name in names if name in first.probabilities]
-    assert sum(shares) <= 1.0 + 1e-6
+    assert max(shares) <= 1.0 and 1.0 - 1e-6 < sum(shares) < 1.01  # both may be at work
     pair = [first.linear.candidates[_place(first, name)] for name in following.between]
     first.save(tmp_path / "out")
     back = sk.read(tmp_path / "out" / "next_poses.csv")  # the YAML file beside it says whose
