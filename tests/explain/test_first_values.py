@@ -70,3 +70,26 @@ def test_what_shows_only_elsewhere_is_sought_there(arm) -> None:
     rigid = replace(base, model=arm.with_values(0.0 * arm.values))
     with pytest.raises(Refusal, match="does not show"):
         stepwise._start(problem, rigid)
+
+
+def test_what_found_no_fit_alone_is_sought_about_another_fit_only(arm, monkeypatch) -> None:
+    """Round after round the search asks for the same sets; what led nowhere leads nowhere again."""
+    tilt = sk.effect(arm.robot, "joint_tilt", "elbow_joint")
+    values = {f"{tilt.id}.stiffness_along": 8e4, f"{tilt.id}.stiffness_across": 5e4}
+    base = fit(arm, readings_on_the_axis((arm + tilt).with_public(values)), noise=NOISE)
+    near, refused = refit(base, [tilt]), set[tuple[sk.Effect, ...]]()
+
+    def nowhere(*_: object, **__: object) -> None:
+        raise Refusal("nowhere")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(stepwise, "solve_near", nowhere)
+        patched.setattr(stepwise, "solve", nowhere)
+        with pytest.raises(Refusal, match="nowhere"):
+            refit(base, [tilt], refused=refused)
+    assert refused == {(tilt,)}
+    with pytest.raises(Refusal, match="did not converge before"):
+        refit(base, [tilt], refused=refused)
+    again = refit(base, [tilt], near, refused=refused)
+    assert again.chi_square == pytest.approx(near.chi_square, rel=1e-9)
+    assert refit(base, [tilt], refused=set()).chi_square == pytest.approx(near.chi_square)

@@ -184,7 +184,13 @@ def with_effects(found: Selection, effects: Sequence[Effect]) -> Selection:
     )
 
 
-def refit(base: Fit, effects: Sequence[Effect], near: Fit | None = None) -> Fit:
+def refit(
+    base: Fit,
+    effects: Sequence[Effect],
+    near: Fit | None = None,
+    *,
+    refused: set[tuple[Effect, ...]] | None = None,
+) -> Fit:
     """The base model with effects added, fitted at exact equilibrium to the same readings.
 
     Args:
@@ -192,13 +198,20 @@ def refit(base: Fit, effects: Sequence[Effect], near: Fit | None = None) -> Fit:
         effects: What joins it.
         near: A fit with most of them, about whose values theirs are sought; without one they are
             sought from the readings to first order in load.
+        refused: Sets that found no fit from the readings alone with this base, and will find none:
+            they are sought about `near` only. What is refused so joins them.
 
     Raises:
         Refusal: No equilibrium was found, or two effects undo each other without end.
     """
     if not effects:
         return base
-    found = _fitted_with(base, effects, near)
+    key, known = tuple(effects), set[tuple[Effect, ...]]() if refused is None else refused
+    try:
+        found = _fitted_with(base, effects, near, alone=key not in known)
+    except Refusal:
+        known.add(key)
+        raise
     for parameter in found.parameters:
         if parameter.effect in effects and not abs(parameter.internal) < (
             BOUNDLESS * parameter.spec.plausible
@@ -207,12 +220,16 @@ def refit(base: Fit, effects: Sequence[Effect], near: Fit | None = None) -> Fit:
     return found
 
 
-def _fitted_with(base: Fit, effects: Sequence[Effect], near: Fit | None) -> Fit:
+def _fitted_with(
+    base: Fit, effects: Sequence[Effect], near: Fit | None, *, alone: bool = True
+) -> Fit:
+    """See `refit`; `alone`: from the readings alone, too."""
     model = base.model
     for effect in effects:
         model = model + effect
     problem = Problem(model, base.problem.measurements, base.problem.noise)
-    for about in (None,) if near is None else (near, None):
+    starts = [*([] if near is None else [near]), *([None] if alone else [])]
+    for about in starts:
         try:
             x, foretold = _start(problem, about)
             found = solve_near(problem, x, most=MORE * foretold)
@@ -220,6 +237,8 @@ def _fitted_with(base: Fit, effects: Sequence[Effect], near: Fit | None) -> Fit:
             continue
         if _misfit(found.residual) <= MORE * foretold:
             return found
+    if not alone:
+        raise Refusal("the fit did not converge before, and does not from here")
     return solve(problem)
 
 
@@ -294,7 +313,7 @@ def _settle(
     """
     final = base
     effects: list[Effect] = []
-    exchanging = False
+    exchanging, refused = False, set[tuple[Effect, ...]]()
     for number in range(ROUNDS):
         ranked = beam_search(regression, max_effects=max_effects)
         if exchanging or set(laws_of(regression, ranked[0])) == set(effects):
@@ -304,7 +323,7 @@ def _settle(
         if set(laws_of(regression, ranked[0])) == set(effects):
             break
         before = effects
-        effects, final = _first_that_fits(base, regression, ranked, final)
+        effects, final = _first_that_fits(base, regression, ranked, final, refused)
         if number and set(effects) == set(before):  # what ranks higher has no fit
             break
         regression = regression_at(
@@ -322,19 +341,23 @@ def laws_of(regression: Regression, scored: Scored) -> list[Effect]:
 
 
 def _first_that_fits(
-    base: Fit, regression: Regression, ranked: Sequence[Scored], near: Fit
+    base: Fit,
+    regression: Regression,
+    ranked: Sequence[Scored],
+    near: Fit,
+    refused: set[tuple[Effect, ...]],
 ) -> tuple[list[Effect], Fit]:
-    """The best model that can be fitted at exact equilibrium too."""
-    refused, most = 0, max((len(model.effects) for model in ranked), default=0)
+    """The best model that can be fitted at exact equilibrium too; see `refit` for `refused`."""
+    count, most = 0, max((len(model.effects) for model in ranked), default=0)
     for model in ranked:
         if len(model.effects) > most:
             continue
         effects = laws_of(regression, model)
         try:
-            found = refit(base, effects, near if near is not base else None)
+            found = refit(base, effects, near if near is not base else None, refused=refused)
             return with_best_form(effects, found, from_there)
         except Refusal:
-            refused += 1
-            if refused >= TRIED:  # what is so large does not converge, whatever is in it
+            count += 1
+            if count >= TRIED:  # what is so large does not converge, whatever is in it
                 most = len(effects) - 1
     return [], base
