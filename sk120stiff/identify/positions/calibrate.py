@@ -215,15 +215,15 @@ def _fitted(
         problem = _problem(small, used, sigma, common, turning)
         _refuse_no_rest(problem)
         found = fitted(problem)
-        before, sigma = {**sigma, "": common, "turning": turning}, learned(found)
+        before, sigma = (sigma, common, turning), learned(found)
         if shared:
             told = common_of(found)
             if told.size and not common:  # what was all noise is parted into two
-                sigma = {k: told.noise * before[k] for k in START}
+                sigma = {k: told.noise * before[0][k] for k in START}
             common, turning = told.size, told.turning
         again = wild_beside(found, readings, wild)
-        own = alike(common, before.pop("")) and alike(turning, before.pop("turning"))
-        same = own and all(alike(sigma[k], before[k]) for k in wide.channels.present)
+        own = alike(common, before[1]) and alike(turning, before[2])
+        same = own and all(alike(sigma[k], before[0][k]) for k in wide.channels.present)
         settled = bool((again == wild).all()) and (same or turn >= ROUNDS)
         if settled or turn == ROUNDS + MORE_ROUNDS:
             break

@@ -168,31 +168,30 @@ def command(
         declare_readings(out)
     arm = open_robot(robot, base, tool)
     one, several = _places(point or [])
+    told = Told(
+        length=length,
+        angle=angle,
+        load=load,
+        wrench=None if wrench is None else wrench_of(wrench),
+        point=one,
+        points=several,
+        payload_point=None
+        if payload_point is None
+        else parse_values(payload_point, "length", where="--payload-point", like="0,0,120 mm"),
+        payloads=_masses(payload or []),
+        joints=_names(joints),
+        coverage=coverage,
+        forces=None if forces is None else forces.value,
+        forces_rpy=None
+        if forces_rpy is None
+        else parse_values(forces_rpy, "angle", where="--forces-rpy", like="0,0,45 deg"),
+        dates=None if dates is None else dates.value,
+    )
     with progress_bar("Reading the file and placing the arm"):
         found = import_readings(
             sources,
             arm,
-            Told(
-                length=length,
-                angle=angle,
-                load=load,
-                wrench=None if wrench is None else wrench_of(wrench),
-                point=one,
-                points=several,
-                payload_point=None
-                if payload_point is None
-                else parse_values(
-                    payload_point, "length", where="--payload-point", like="0,0,120 mm"
-                ),
-                payloads=_masses(payload or []),
-                joints=_names(joints),
-                coverage=coverage,
-                forces=None if forces is None else forces.value,
-                forces_rpy=None
-                if forces_rpy is None
-                else parse_values(forces_rpy, "angle", where="--forces-rpy", like="0,0,45 deg"),
-                dates=None if dates is None else dates.value,
-            ),
+            told,
             joints_file=joints_file,
             loads_file=loads_file,
             before=before,
