@@ -142,14 +142,14 @@ def two_digits(value: float) -> str:
 
 
 def micro(value: float, digits: int = 3) -> str:
-    """Millionths, as µm of metres: so many significant digits, and no power of ten.
+    """Millionths, as µm of metres: so many significant digits, all that stand before the point.
 
-    >>> micro(1.2345e-4), micro(1.7712e-3), micro(1.7124e-2, 4)
-    ('123', '1771', '17124')
+    >>> micro(2e-5), micro(1.2345e-4), micro(1.7712e-3), micro(1.7124e-2, 4)
+    ('20.0', '123', '1771', '17124')
     """
     millionths = 1e6 * value
-    large = abs(millionths) >= 10**digits - 0.5
-    return f"{millionths:.0f}" if large else f"{millionths:.{digits}g}"
+    large = abs(millionths) >= 10 ** (digits - 1) - 0.05
+    return f"{millionths:.0f}" if large else f"{millionths:#.{digits}g}"
 
 
 def to_one_place(error: float | None, *values: float) -> list[str]:

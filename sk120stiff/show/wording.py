@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from sk120stiff.errors import micro
+
 
 def um(metres: float) -> str:
     """A length in micrometres: three digits, none after the point from 100 on; "?": not known."""
-    if math.isnan(metres):
-        return "?"
-    microns = 1e6 * metres
-    return f"{microns:.0f}" if abs(microns) >= 99.95 else f"{microns:#.3g}"
+    return "?" if math.isnan(metres) else micro(metres)
 
 
 def um_or_less(metres: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from sk120stiff.errors import listed
+from sk120stiff.errors import listed, micro
 from sk120stiff.explain.localise.localisation import LEVEL, Localisation, Suspicion
 from sk120stiff.explain.localise.suspects import CLOCKS, comes_and_goes
 from sk120stiff.identify.checks.lack_of_fit import chance
@@ -260,8 +260,7 @@ def _series(found: Localisation) -> Iterator[str]:
 
 def microns(metres: float) -> str:
     """A length in micrometres with its unit: three digits, none after the point from 100 on."""
-    microns = 1e6 * metres
-    return f"{microns:.0f} µm" if microns >= 99.95 else f"{microns:#.3g} µm"
+    return f"{micro(metres)} µm"
 
 
 def _percent(share: float) -> str:
