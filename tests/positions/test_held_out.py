@@ -161,6 +161,8 @@ def test_a_file_that_speaks_against_the_names_does_so_in_the_headline(answer: Ex
     assert "much more than these readings foretell" in next_step_of_positions(far)
     assert "much more" not in next_step_of_positions(answer)
     assert kept not in next_step_of_positions(told)
+    guessed = next_step_of_positions(replace(answer, guess=answer.final, guess_heldout=1e-9))
+    assert "best_guess.yaml is off by 0.001000 µm at poses left out" in guessed  # of no file
     document = verdict_of_positions(told)
     assert document["gap"]["borne_out"]["contradicted"] is True
     assert document["holdout"]["rms_um"] == pytest.approx(1e6 * answer.heldout.rms)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -65,8 +65,8 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
         f"{answer.chance_of(item)}; {answer.taken_off(item, ' of the held-out gap')}."
         + "".join(f" {said}" for said in answer.only_together(item))
         + _not_told(answer, item)
-        + (f" By no pose told from: {', '.join(item.untold)}." if item.untold else "")
-        + (f" Always the same in such readings: {', '.join(same)}." if (same := item.same) else "")
+        + (f" By no pose told from: {_likely(answer, item.untold)}." if item.untold else "")
+        + (f" Always the same in such readings: {_likely(answer, item.same)}." if item.same else "")
         for item in answer.findings
     ]
     held = [] if answer.heldout is None else [answer.heldout.sentence(answer.final.problem)]
@@ -113,13 +113,18 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
 def _not_told(answer: Explained, item: Named) -> str:
     """What other poses could tell from a name; what is hardly likely is counted."""
     worth, faint = answer.rivals_of(item)
-    told = [
-        f"{name} ({likely(answer.probabilities.get(name, 0.0))})"
-        for name in worth
-        if name in item.others
-    ]
+    told = _each_likely(answer, [name for name in worth if name in item.others])
     told += [f"{len(faint)} others, each with {likely(0.0)}"] if faint else []
     return f" Not told from: {listed(told)}." if told else ""
+
+
+def _each_likely(answer: Explained, names: Sequence[str]) -> list[str]:
+    return [f"{name} ({likely(answer.probabilities.get(name, 0.0))})" for name in names]
+
+
+def _likely(answer: Explained, names: Sequence[str]) -> str:
+    """Names with how probable each of them is."""
+    return ", ".join(_each_likely(answer, names))
 
 
 def _size(answer: Explained) -> str:

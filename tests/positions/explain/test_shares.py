@@ -76,7 +76,9 @@ def test_probabilities_are_told_of_each_name_and_of_one_of_them(answer: Explaine
     more = "more than of the one that model.yaml has"
     assert told.rival(both, "a:j1") == f"not told apart here; P = 0.63, {more}"
     assert told.rival(both, "b:j1") == "always the same; P = 0.20"
-    assert "add up to more" in told.sums()[0] and told.sums()[0] in told.report().html()
+    page = told.report().html()
+    assert "add up to more" in told.sums()[0] and told.sums()[0] in page
+    assert "a:j1 (P = 0.63)" in page and "b:j1 (P = 0.20)" in page
     shared = replace(told, probabilities={own: 0.5, "a:j1": 0.3, "b:j1": 0.19})
     assert shared.sums() == ()
 

@@ -121,14 +121,14 @@ def next_step_of_positions(answer: Explained) -> str:
         said += tell_apart(answer.findings)
     if answer.guess is not None and answer.guess_heldout < answer.steps[-1].heldout_rms:
         said.append(
-            f"best_guess.yaml is off by {micro(answer.guess_heldout, 4)} {unit} there: nearer, for "
-            "reasons that are not confirmed."
+            f"best_guess.yaml is off by {micro(answer.guess_heldout, 4)} {unit} at poses "
+            "left out: nearer, for reasons that are not confirmed."
         )
     if answer.whole is not None:
         said.append(
             "To compensate, all errors of geometry and springs together, none of them named, are "
-            f"nearer: off by {micro(answer.whole, 4)} {unit} there. 'sk120stiff identify DATA "
-            "--out calibrated.yaml' fits them all."
+            f"nearer: off by {micro(answer.whole, 4)} {unit} at poses left out. "
+            "'sk120stiff identify DATA --out calibrated.yaml' fits them all."
         )
     if answer.verdict == "outside":
         said.append(
