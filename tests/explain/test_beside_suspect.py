@@ -88,7 +88,7 @@ def test_a_name_stands_beside_a_cause_without_one(springs):
 def test_most_of_it_is_more_than_half_of_its_squares(left: float, said: str) -> None:
     goes_with = GoesWith("the moon", left, 1e-5, beside_names=False)
     assert goes_with.sentences() == (
-        f"{said} with the moon: with that in the model, {1e6 * left:.3g} µm rms per axis are left "
+        f"{said} with the moon: with that in the model, {1e6 * left:.2f} µm rms per axis are left "
         "beyond the noise.",
     )
     assert goes_with.most == (said == "Most of it goes")
@@ -99,7 +99,7 @@ def test_what_foretells_other_poses_no_better_is_no_law(gap: float) -> None:
     told = foretold("Poses that are left out are", gap, 5e-6)
     assert told is not None
     assert told.better == (gap < 5e-6) == (NOT_FORETOLD not in told.sentence())
-    assert f"to {1e6 * gap:.3g} µm rms per axis with it and to 5 without" in told.sentence()
+    assert f"to {1e6 * gap:.2f} µm rms per axis with it and to 5.00 without" in told.sentence()
     assert foretold("Poses that are left out are", float("nan"), 5e-6) is None
 
 
