@@ -40,9 +40,8 @@ def lacking(m: Measurements, part: str, row: int, by: int) -> Measurements:
     )
 
 
-@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize(("arm", "by"), zip(ARMS, [1, 2], strict=True))
 @pytest.mark.parametrize("part", PARTS)
-@pytest.mark.parametrize("by", [1, 2])
 def test_the_line_is_told(arm: str, part: str, by: int) -> None:
     sound = ARMS[arm]()
     found = find_slip(sound.robot, lacking(sound.readings, part, LINE - 2, by))

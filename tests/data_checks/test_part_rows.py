@@ -27,6 +27,11 @@ ROWS = {
 }
 
 
+def _in_turn(*units: tuple[str, float]) -> list[tuple[str, str, float]]:
+    """Each unit in one choice of rows, and each choice by one unit."""
+    return [(rows, *unit) for rows, unit in zip(ROWS, units, strict=True)]
+
+
 def numbered(readings: Measurements) -> Measurements:
     """With the lines of a file whose first holds the headers."""
     return replace(readings, line=np.arange(2, readings.n_readings + 2))
@@ -53,8 +58,7 @@ def slip_in(readings: Measurements) -> Slip | None:
     return find_slip(ur5().robot, readings)
 
 
-@pytest.mark.parametrize("rows", ROWS)
-@pytest.mark.parametrize(("unit", "by"), [("kgf", KGF), ("lbf", LBF), ("kN", 1e3)])
+@pytest.mark.parametrize(("rows", "unit", "by"), _in_turn(("kgf", KGF), ("lbf", LBF), ("kN", 1e3)))
 def test_forces_in_another_unit(rows: str, unit: str, by: float) -> None:
     part, lines = ROWS[rows]
     found = slip_in(loads_times(by, part))
@@ -64,8 +68,7 @@ def test_forces_in_another_unit(rows: str, unit: str, by: float) -> None:
     assert f"Write fx, fy, fz there times {by:.6g}." in found.remedy
 
 
-@pytest.mark.parametrize("rows", ROWS)
-@pytest.mark.parametrize(("unit", "by"), [("inch", 25.4), ("um", 1e-3), ("m", 1e3)])
+@pytest.mark.parametrize(("rows", "unit", "by"), _in_turn(("inch", 25.4), ("um", 1e-3), ("m", 1e3)))
 def test_displacements_in_another_unit(rows: str, unit: str, by: float) -> None:
     part, lines = ROWS[rows]
     found = slip_in(read_times(by, part))
@@ -137,7 +140,7 @@ def test_dead_readings_are_no_unit() -> None:
     assert slip_in(replace(readings, displacement=moved)) is None
 
 
-@pytest.mark.parametrize("play", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("play", [0.5, 2.0])
 def test_gears_with_play_are_not_doubted(play: float) -> None:
     """Small loads then move the point several times as far for their size, row by row."""
     for robot, readings in _uneven_loads(play):

@@ -18,9 +18,8 @@ def refused(arm: Arm, data: Measurements) -> Refusal:
     return found.value
 
 
-@pytest.mark.parametrize("arm", ARMS)
+@pytest.mark.parametrize(("arm", "stated"), zip(ARMS, [True, False], strict=True))
 @pytest.mark.parametrize("garbage", ["shuffled", "random"])
-@pytest.mark.parametrize("stated", [True, False])
 def test_garbage_is_refused(arm: str, garbage: str, stated: bool) -> None:
     known = ARMS[arm]()
     data = spoilt(known, garbage)

@@ -37,8 +37,9 @@ def told(text: str, before: str) -> float:
     return float(found[1])
 
 
-@pytest.mark.parametrize("arm", ARMS)
-@pytest.mark.parametrize("degrees", [180.0, -90.0, 45.0, -21.0])
+@pytest.mark.parametrize(
+    ("arm", "degrees"), zip(2 * [*ARMS], [180.0, -90.0, -21.0, 45.0], strict=True)
+)
 def test_a_base_frame_that_is_turned(arm: str, degrees: float) -> None:
     known = ARMS[arm]()
     found = find_slip(known.robot, turned(known.readings, degrees, loads=True))
@@ -94,8 +95,7 @@ def test_two_zeros_that_are_quarters_off(one: tuple[int, int], other: tuple[int,
         assert f"the zero of {known.robot.actuated[k]} seems to be {degrees} deg off" in found.said
 
 
-@pytest.mark.parametrize("arm", ARMS)
-@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize(("arm", "axis"), zip(ARMS, [0, 1], strict=True))
 @pytest.mark.parametrize("what", ["displacement", "force"])
 def test_axes_whose_z_points_down(arm: str, axis: int, what: str) -> None:
     known = ARMS[arm]()

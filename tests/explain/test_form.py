@@ -45,7 +45,7 @@ def springs() -> Model:
     return model
 
 
-@pytest.mark.parametrize(("below", "stiff"), [(0.56, 2e6), (0.97, 5e6), (1.23, 1e5)])
+@pytest.mark.parametrize(("below", "stiff"), [(0.56, 2e6), (1.23, 1e5)])
 def test_it_is_found_with_its_error(springs: Model, below: float, stiff: float) -> None:
     assert below not in PEDESTALS
     cause = Pedestal("base_link", {"x": 1.0 / stiff, "y": 1.6 / stiff}, {"below": below})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -41,16 +42,15 @@ class Arm:
     up: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # against gravity, base
 
     def pose(self, q: Array) -> tuple[Array, Array, Array]:
-        """Marker (N, 3), tool axes (N, 3, 3) and potential energy (N,) at true joint values."""
-        R, p, energy = Rotation.identity(len(q)), np.zeros((len(q), 3)), np.zeros(len(q))
+        """Marker (..., 3), tool axes (..., 3, 3) and energy (...) at true joint values (..., 6)."""
+        R, p, energy = np.eye(3), np.zeros(3), np.zeros(q.shape[:-1])
         for k in range(6):
-            p = p + R.apply(ORIGINS[k] + self.shift[k])
-            R = R * Rotation.from_rotvec(self.turn[k])
-            R = R * Rotation.from_rotvec(AXES[k] * q[:, k, None])
-            energy += MASSES[k] * G * (p + R.apply(CENTRES[k])) @ self.up
-        p = p + R.apply(TOOL)
+            p = p + R @ (ORIGINS[k] + self.shift[k])
+            R = R @ Rotation.from_rotvec(self.turn[k]).as_matrix() @ _about(AXES[k], q[..., k])
+            energy += MASSES[k] * G * (p + R @ CENTRES[k]) @ self.up
+        p = p + R @ TOOL
         energy += self.payload * G * p @ self.up
-        return p + R.apply(self.marker), R.as_matrix(), energy
+        return p + R @ self.marker, R, energy
 
     def stands(self, a: Array) -> tuple[Array, Array]:
         """Marker (N, 3) and tool axes (N, 3, 3) at rest under its own weight."""
@@ -58,7 +58,7 @@ class Arm:
         q = start
         yields = self.compliance.any() or self.play.any()
         for _ in range(3 if self.weighs and yields else 0):
-            torque = -np.stack([self._slope(q, k) for k in range(6)], axis=1)
+            torque = self.torque_of_weight(q)
             side = np.tanh(torque / self.flank) if self.flank else np.sign(torque)
             q = start + self.compliance * torque + self.play * side
             q -= self.hardens * torque * np.abs(torque)
@@ -68,10 +68,22 @@ class Arm:
         rocked = Rotation.from_rotvec((self.rocks[:, None] * moment).T @ ways)
         return rocked.apply(x), rocked.as_matrix() @ R
 
-    def _slope(self, q: Array, k: int) -> Array:
-        step = np.zeros(6)
-        step[k] = 1e-5
-        return (self.pose(q + step)[2] - self.pose(q - step)[2]) / 2e-5
+    def torque_of_weight(self, q: Array) -> Array:
+        """(N, 6) what the weight does to the joints [N·m], though it may not count."""
+        return -slopes(lambda near: self.pose(near)[2], q)
+
+
+def slopes(energy: Callable[[Array], Array], q: Array) -> Array:
+    """(N, 6) central differences of an energy, which takes joint values (N, 12, 6) at once."""
+    e = energy(q[:, None] + 1e-5 * np.concatenate([np.eye(6), -np.eye(6)]))
+    return (e[:, :6] - e[:, 6:]) / 2e-5
+
+
+def _about(axis: Array, angle: Array) -> Array:
+    """(..., 3, 3) rotations about one axis (Rodrigues)."""
+    cross = np.cross(np.eye(3), axis)
+    at = angle[..., None, None]
+    return np.eye(3) + np.sin(at) * cross + (1.0 - np.cos(at)) * (cross @ cross)
 
 
 SPAN = {"shift": 0.016, "turn": 0.05, "marker": 2.0}  # m, rad; no arm is off by more

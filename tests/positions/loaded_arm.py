@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tests.positions.arm import NAMES, Arm, Array, urdf
+from tests.positions.arm import NAMES, Arm, Array, slopes, urdf
 
 SPRINGS = np.array([1 / 9e5, 1 / 8e5, 1 / 5e5, 1 / 1e5, 1 / 8e4, 1 / 5e4])  # rad/(N·m)
 ORIGIN = np.zeros(3)
@@ -30,25 +30,18 @@ def rests(
     q, tilt = a, Rotation.identity(len(a))
     for _ in range(12):
         pull = tilt.inv().apply(force)
-        torque = np.stack([-_slope(own, q, pull, k) for k in range(6)], axis=1)
+
+        def energy(near: Array, pull: Array = pull) -> Array:
+            x, _, weight = own.pose(near)
+            return weight * own.weighs - (x * pull[:, None]).sum(axis=-1)
+
+        torque = -slopes(energy, q)
         q = a + arm.compliance * torque
         moment = np.cross(tilt.apply(own.pose(q)[0] - about), force)
         tilt = Rotation.from_rotvec(rocking * moment * [1.0, 1.0, 0.0])
     x, R, _ = own.pose(q)
     origin = x - np.einsum("nij,j->ni", R, PULLED)
     return about + tilt.apply(origin - about), tilt.as_matrix() @ R
-
-
-def _slope(arm: Arm, q: Array, pull: Array, k: int) -> Array:
-    """(N,) derivative of the energy of weight and load by joint k."""
-    step = np.zeros(6)
-    step[k] = 1e-5
-
-    def energy(q: Array) -> Array:
-        x, _, own = arm.pose(q)
-        return own * arm.weighs - (x * pull).sum(axis=1)
-
-    return (energy(q + step) - energy(q - step)) / 2e-5
 
 
 def moved(

@@ -48,7 +48,7 @@ def beyond_springs(path: Path, *, rigid: bool = True) -> tuple[Explained, set[st
     return answer, {name for name in names if not name.startswith("joint_springs")}
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_no_impostor_is_named(seed: int, tmp_path: Path) -> None:
     answer, others = beyond_springs(uneven(tmp_path, 12, 2, seed))
     assert others == set()
@@ -60,8 +60,9 @@ def test_a_cause_is_named_beside_it(tmp_path: Path) -> None:
     assert others == {"base_rocking:base"}
 
 
-@pytest.mark.parametrize("rocking", [0.0, ROCKING])
-@pytest.mark.parametrize(("count", "loads"), [(6, 4), (8, 3), (12, 2)])
+@pytest.mark.parametrize(
+    ("count", "loads", "rocking"), [(6, 4, ROCKING), (8, 3, 0.0), (12, 2, ROCKING)]
+)
 def test_beside_springs_there_is_no_impostor(
     count: int, loads: int, rocking: float, tmp_path: Path
 ) -> None:

@@ -109,10 +109,17 @@ def test_a_ceiling_that_is_stated_is_well(tmp_path: Path, more: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("waves", "yields"),
-    [(0.0, None), (3e-4, None), (2e-4, np.zeros(6)), (0.0, BALANCED), (2e-4, BALANCED)],
+    ("waves", "yields", "count"),
+    [
+        (0.0, None, 60),
+        (3e-4, None, 25),
+        (3e-4, None, 120),
+        (2e-4, np.zeros(6), 60),
+        (0.0, BALANCED, 25),
+        (2e-4, BALANCED, 60),
+        (2e-4, BALANCED, 120),
+    ],
 )
-@pytest.mark.parametrize("count", [25, 60, 120])
 def test_nothing_else_looks_like_it(
     tmp_path: Path, waves: float, yields: Array | None, count: int
 ) -> None:

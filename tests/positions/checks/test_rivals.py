@@ -45,8 +45,7 @@ def file(folder: Path, x: Array, *, a: Array = A, labels: str = "") -> Path:
 FIRST = SLIP * AFTER * np.eye(6)[0]
 
 
-@pytest.mark.parametrize("seed", [6, 9])
-@pytest.mark.parametrize("verb", [fit, explain])
+@pytest.mark.parametrize(("verb", "seed"), [(fit, 6), (explain, 9)])
 def test_one_number_of_a_joint_is_named_first_and_what_explains_as_much_beside_it(
     verb, seed: int, tmp_path: Path
 ) -> None:
@@ -72,8 +71,7 @@ def by_joints() -> Array:
     return a
 
 
-@pytest.mark.parametrize("seed", [4, 6])
-@pytest.mark.parametrize("verb", [fit, explain])
+@pytest.mark.parametrize(("verb", "seed"), [(fit, 4), (explain, 6)])
 def test_poses_joint_by_joint_whose_errors_go_together_from_row_to_row(
     verb, seed: int, tmp_path: Path
 ) -> None:
@@ -124,8 +122,7 @@ def test_where_the_file_says_that_nothing_moved_it_is_told_and_stops_nothing(
     assert any(note.startswith("J1 looks slipped") for note in notes)
 
 
-@pytest.mark.parametrize("seed", [6, 9])
-@pytest.mark.parametrize("verb", [fit, explain])
+@pytest.mark.parametrize(("verb", "seed"), [(fit, 6), (explain, 9)])
 def test_an_arm_with_such_errors_alone_is_not_taken_for_one_that_moved(
     verb, seed: int, tmp_path: Path
 ) -> None:

@@ -82,7 +82,7 @@ def test_its_columns_are_the_torques_of_moments_of_links(tmp_path: Path) -> None
     np.testing.assert_allclose(own_weight(part), columns[problem.rows < 7], rtol=1e-9, atol=1e-12)
     true = replace(errors(0), shift=np.zeros((6, 3)), turn=np.zeros((6, 3)))
     a = problem.load_cases.a
-    torque = -np.stack([true._slope(a, k) for k in range(6)], axis=1)
+    torque = true.torque_of_weight(a)
     c = {p.effect.where: p.internal for p in found.parameters if p.effect.joint_spring}
     sag = torque * np.array([c.get(f"j{k + 1}", 0.0) for k in range(6)])
     moved = (problem.by_joints * sag[problem.rows]).sum(axis=1)
