@@ -22,7 +22,7 @@ BOUNDED: dict[str, tuple[Line, int]] = {  # line → a part of it, attacks at mo
     "limits": (environments.limits, 2),
     "damaged maps": (lambda folder: maps.damage(folder, every=67), 9),
     "full disk": (lambda folder: disks.full_disk(folder, sizes=(80,)), 1),
-    "garbage": (lambda folder: readings.garbage(folder, only=1), 12),
+    "garbage": (lambda folder: readings.garbage(folder, only=1), 6),
     "slips of the pen": (lambda folder: readings.slips(folder, seeds=(3,), every=40), 9),
     "scale slips": (lambda folder: readings.scale_slips(folder, seeds=()), 30),
     "beyond buckling": (lambda folder: bending.bending(folder, 6, 100), 6),

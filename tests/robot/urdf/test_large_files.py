@@ -41,10 +41,10 @@ CASES = {
     "nesting": lambda: robot("<a>" * 8_000_000),
     "nesting in a link": lambda: robot("<link name='x'>" + "<a>" * 8_000_000),
     "50 MB of pictures": lambda: robot(
-        "<link name='x'>" + VISUAL * 100_000 + " " * 44_000_000 + "</link>", joint(1, 0))
+        "<link name='x'>" + VISUAL * 20_000 + " " * 49_000_000 + "</link>", joint(1, 0))
         .replace('<link name="l0"/>', '').replace("'x'", '"l0"'),
     "comments left open": lambda: robot("<!-- " * 10_000_000),
-    "bad comments": lambda: robot("<!-- -- -->" * 1_000_000, joint(1, 0)),
+    "bad comments": lambda: robot("<!-- -- -->" * 200_000, joint(1, 0)),
     "ampersands": lambda: robot("&" * 50_000_000),
     "long name": lambda: robot(f"<link name='{'x' * 50_000_000}'/>"),
     "long number": lambda: robot(joint(1, 0).replace("1 0 0", "1" * 50_000_000)),
