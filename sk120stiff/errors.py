@@ -152,6 +152,15 @@ def micro(value: float, digits: int = 3) -> str:
     return f"{millionths:.0f}" if large else f"{millionths:#.{digits}g}"
 
 
+def short(value: float, digits: int = 3) -> str:
+    """So many significant digits, without powers of ten and without zeros at the end.
+
+    >>> short(1771.2), short(30.0), short(0.012345), short(2.5e6)
+    ('1770', '30', '0.0123', '2500000')
+    """
+    return f"{float(f'{value:.{digits}g}'):.15g}"
+
+
 def to_one_place(error: float | None, *values: float) -> list[str]:
     """Values, and last their standard error, all to the decimal place of its second digit.
 

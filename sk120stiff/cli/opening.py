@@ -164,6 +164,17 @@ def pose_of(robot: Robot, text: str | None, option: str = "--pose") -> Array:
     return a
 
 
+def frame_at(robot: Robot, at: str | None) -> str:
+    """The frame that --at names, the tool frame without it.
+
+    Raises:
+        InputError: The robot has no such frame.
+    """
+    frame = at or robot.tool_frame
+    robot.tree.body(frame, where="--at")
+    return frame
+
+
 def wrench_of(text: str | None) -> Array:
     """Wrench (6,) [N, N·m] from --wrench; no load where nothing is given."""
     return np.zeros(6) if text is None else parse_wrench(text, where="--wrench")

@@ -19,7 +19,7 @@ from sk120stiff.data_checks.search import SPARE, Slip, as_it_stands, find_slip
 from sk120stiff.data_checks.sheet import sheet_of
 from sk120stiff.data_checks.turns import TurnSlip, turn_slip
 from sk120stiff.data_checks.wild import HALF
-from sk120stiff.errors import Refusal, ToolkitWarning
+from sk120stiff.errors import Refusal, ToolkitWarning, short
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
 from sk120stiff.robot import Robot
@@ -174,7 +174,7 @@ def _length(metres: float) -> str:
     for unit, size in (("m", 1.0), ("mm", 1e-3)):
         if metres >= size:
             return f"{metres / size:.3g} {unit}"
-    return f"{metres * 1e6:.3g} µm"
+    return f"{short(metres * 1e6)} µm"
 
 
 FAR = 0.05  # share of a joint's range, beyond which a pose is no matter of calibration

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.arrays import Array, Index, Mask
-from sk120stiff.errors import MissingPart
+from sk120stiff.errors import MissingPart, short
 from sk120stiff.identify.moves import Moves
 from sk120stiff.identify.solve.beforehand import Beforehand
 from sk120stiff.identify.solve.covariance import (
@@ -139,7 +139,7 @@ class Fit:
     @property
     def size(self) -> str:
         """The gap's root mean square with its unit."""
-        return f"{1e6 * self.rms:.3g} µm rms"
+        return f"{short(1e6 * self.rms)} µm rms"
 
     @property
     def per_axis(self) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from sk120stiff.errors import two_digits
+from sk120stiff.errors import short, two_digits
 from sk120stiff.identify.checks.lack_of_fit import lack_of_fit
 from sk120stiff.identify.checks.null_space import weak_directions
 from sk120stiff.identify.checks.yardstick import yardstick
@@ -67,7 +67,7 @@ def _statistics(fit: Fit) -> list[str]:
     lines = [
         f"{_count(fit)} at {poses} poses, {fit.estimated} values estimated, "
         f"{fit.degrees_of_freedom} degrees of freedom, {fit.iterations} evaluations.",
-        f"Gap {fit.rms * 1e6:.3g} µm rms per axis; condition {fit.condition:.3g}.",
+        f"Gap {short(fit.rms * 1e6)} µm rms per axis; condition {fit.condition:.3g}.",
     ]
     if fit.problem.weights is None:
         lines.append(
@@ -103,7 +103,8 @@ def noise_sentence(fit: Fit) -> str:
     model = fit.problem.noise.scaled(noise.scale**0.5)
     said = noise.sentence()
     if noise.sigma is None and fit.degrees_of_freedom > 0:
-        said += f" If the model were true, it would be {model.sigma * 1e6:.3g} µm for one reading."
+        would = short(model.sigma * 1e6)
+        said += f" If the model were true, it would be {would} µm for one reading."
     return f"{said} {model.of_growth_and_zero(fit.problem.measurements)}"
 
 
@@ -127,7 +128,8 @@ def _far_off(fit: Fit) -> list[str]:
         return []
     size = np.sqrt(np.nansum(fit.gap**2, axis=1))
     worst = sorted(rows, key=lambda k: -float(size[k]))[:MOST_LINES]
-    where = [f"{place_of(fit.problem.measurements, int(k))}: {1e6 * size[k]:.3g} µm" for k in worst]
+    readings = fit.problem.measurements
+    where = [f"{place_of(readings, int(k))}: {short(1e6 * size[k])} µm" for k in worst]
     one = len(rows) == 1
     return [
         f"{len(rows)} reading{' is' if one else 's are'} far off what the fit makes of the others, "

@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_model, pose_of
+from sk120stiff.cli.opening import frame_at, open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument, PoseOption
 from sk120stiff.cli.tables import table
 from sk120stiff.errors import InputError
@@ -58,7 +58,8 @@ def command(
     robot = believed.robot
     target = out or Path(f"{robot.name}{chosen.endings[0]}")
     a = pose_of(robot, pose) if chosen.moves else None
-    made = exported(believed, Request(target, a, at), chosen)
+    frame = frame_at(robot, at) if chosen.moves else None
+    made = exported(believed, Request(target, a, frame), chosen)
     if out is not None:
         write_exported(made, out)
     document = {

@@ -11,7 +11,7 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import direction_of, open_model, pose_of, wrench_of
+from sk120stiff.cli.opening import direction_of, frame_at, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
     BaseOption,
@@ -109,7 +109,7 @@ def command(
     will_draw(page, figures)
     believed = open_model(robot, model, base=base, tool=tool)
     arm_robot = believed.robot
-    arm = elastic_arm(believed, frame=at)
+    arm = elastic_arm(believed, frame=frame_at(arm_robot, at))
     rest = pose_of(arm_robot, pose)
     loads = np.array([wrench_of(text) for text in wrench] if wrench else [np.zeros(6)])
     points = _points(arm, grid, rest, axis, orientation)

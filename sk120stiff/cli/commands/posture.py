@@ -13,7 +13,7 @@ import typer
 from sk120stiff.arrays import Array
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, height_words, opened_cell
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import direction_of, open_model
+from sk120stiff.cli.opening import direction_of, frame_at, open_model
 from sk120stiff.cli.options import AtOption, ModelArgument, SeedOption
 from sk120stiff.cli.outputs import will_draw, will_show
 from sk120stiff.cli.tables import progress_bar, table
@@ -119,6 +119,7 @@ def command(
     if limit_margin is not None:
         (margin,) = parse_values(limit_margin, "angle", where="--limit-margin", like="5 deg")
         _refuse_margin(robot, float(margin))
+    at = frame_at(robot, at)
     arm = elastic_arm(believed, frame=at)
     freedom = None if place is None else _placement(place, given.position)
     around = at_work(opened_cell(robot, cell, path))

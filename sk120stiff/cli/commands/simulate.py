@@ -13,7 +13,7 @@ import typer
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.opening import declare_readings, model_for, open_data
 from sk120stiff.cli.options import ModelArgument, SeedOption
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, short
 from sk120stiff.measurements import Instrument, Measurements, NoiseModel, write_measurements
 from sk120stiff.plan import Schedule, as_positions, simulate
 from sk120stiff.units import parse_size
@@ -116,7 +116,7 @@ def command(
         f"{seed}."
         if loaded.absolute is not None
         else f"{loaded.n_readings} readings at {len(loaded.poses)} poses, displacements up to "
-        f"{largest * 1e6:.4g} µm, seed {seed}."
+        f"{short(largest * 1e6, 4)} µm, seed {seed}."
     )
     return Answer(
         document, [said, *loaded.notes, f"Written to {out} and {out.with_suffix('.yaml')}."]

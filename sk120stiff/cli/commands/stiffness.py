@@ -6,7 +6,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import open_model, pose_of, wrench_of
+from sk120stiff.cli.opening import frame_at, open_model, pose_of, wrench_of
 from sk120stiff.cli.options import (
     AtOption,
     BaseOption,
@@ -67,7 +67,7 @@ def command(
     believed = open_model(robot, model, base=base, tool=tool)
     arm = believed.robot
     a, load = pose_of(arm, pose), wrench_of(wrench)
-    frame = at or arm.tool_frame
+    frame = frame_at(arm, at)
     found = loaded_stiffness(believed, a, load, frame)
     uncertainty = loaded_uncertainty(believed, a, load, found, frame)
     document = {

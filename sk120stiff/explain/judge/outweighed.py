@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sk120stiff.effects import Effect
-from sk120stiff.errors import Refusal
+from sk120stiff.errors import Refusal, short
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
@@ -40,9 +40,9 @@ def outweighed(found: Selection, names: Sequence[Effect]) -> tuple[str, str] | N
         taken = max(squares[k] - squares[k + 1], 0.0) ** 0.5
         if taken < left.rms:
             return names[k].id, (
-                f"{names[k].id} fits, but takes off {1e6 * taken:.3g} µm where "
-                f"{1e6 * left.rms:.3g} µm remain without a name; it may imitate part of that and "
-                "is not named."
+                f"{names[k].id} fits, but takes off {short(1e6 * taken)} µm where "
+                f"{short(1e6 * left.rms)} µm remain without a name; it may imitate part of that "
+                "and is not named."
             )
     return None
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import expit
 from scipy.special import logit as _logit
 
-from sk120stiff.errors import two_digits
+from sk120stiff.errors import short, two_digits
 from sk120stiff.explain.judge.adequacy import Adequacy
 from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.explain.localise.suspects import suspect_named
@@ -110,22 +110,20 @@ class Remainder:
 
     def sentence(self) -> str:
         """How large it is, in plain words."""
-        low, high = (1e6 * end for end in self.interval)
+        low, high = (short(1e6 * end) for end in self.interval)
         if not self.significant:
-            if not np.isfinite(high):
+            if not np.isfinite(self.interval[1]):
                 return "The readings do not tell how large an error of the model's form is."
-            return (
-                f"Beyond the noise the model's form is off by {high:.3g} µm rms per axis at most."
-            )
+            return f"Beyond the noise the model's form is off by {high} µm rms per axis at most."
         parts = []
         if self.form.proportional:
             parts.append(f"{two_digits(100.0 * self.form.proportional)} % of a pose's compliance")
         if self.form.constant:
-            parts.append(f"{1e6 * self.form.constant:.3g} µm of its own")
+            parts.append(f"{short(1e6 * self.form.constant)} µm of its own")
         as_if = f", as if every pose had {' and '.join(parts)} that no effect explains"
         return (
-            f"Left over beyond the noise are {1e6 * self.rms:.3g} µm rms per axis (95 %: {low:.3g} "
-            f"to {high:.3g}){as_if if parts else ''}."
+            f"Left over beyond the noise are {short(1e6 * self.rms)} µm rms per axis (95 %: {low} "
+            f"to {high}){as_if if parts else ''}."
         )
 
 

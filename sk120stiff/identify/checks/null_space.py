@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import SPRINGS
-from sk120stiff.errors import listed, two_digits
+from sk120stiff.errors import listed, short, two_digits
 from sk120stiff.identify.checks.unseen import why_unseen
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.covariance import covariance_of
@@ -181,7 +181,7 @@ def _drawn_size(fit: Fit, group: Index) -> str:
     parameter = fit.parameters[group[0]]
     size = float(np.sqrt(np.mean((fit.x * fit.problem.scale)[group] ** 2)))
     unit = parameter.spec.internal_unit
-    told = f"{1e6 * size:.3g} µm" if unit == "m" else f"{size:.3g} {unit}"
+    told = f"{short(1e6 * size)} µm" if unit == "m" else f"{size:.3g} {unit}"
     return f"{parameter.effect.name.replace('_', ' ')} ({told} rms)"
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from scipy import stats
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import short
 from sk120stiff.identify.checks.left_over import left_over, orthonormal
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.noise.saturated import load_basis, pose_columns
@@ -79,13 +80,13 @@ class Yardstick:
             return "The noise of the readings is unknown: nobody stated it and nothing tells it."
         if self.source == "computed":
             return (
-                f"Readings and model agree to less than {FINEST * 1e6:.3g} µm, closer than any "
+                f"Readings and model agree to less than {short(FINEST * 1e6)} µm, closer than any "
                 "instrument reads: the readings were computed, and what is left is rounding."
             )
         told = f"{self.name} ({self.freedom:.0f} degrees of freedom)"
         if self.source == "stated":
             told = "the data's own statement"
-        return f"One reading has a standard uncertainty of {self.sigma * 1e6:.3g} µm, by {told}."
+        return f"One reading has a standard uncertainty of {short(self.sigma * 1e6)} µm, by {told}."
 
 
 def yardstick(fit: Fit) -> Yardstick:
@@ -125,8 +126,8 @@ def contradiction(fit: Fit) -> str | None:
         f"Readings of single poses scatter {found.scale**0.5:.2g} times as much about all that is "
         "smooth in their loads as the stated uncertainty of one reading allows; standard errors "
         "are inflated. Check noise: {sigma: ..., unit: ...} in the YAML file (σ = "
-        f"{found.sigma * 1e6:.3g} µm would fit), rows that do not belong together, single readings "
-        "far off ('identify --robust'), and unloading that no column branch tells."
+        f"{short(found.sigma * 1e6)} µm would fit), rows that do not belong together, single "
+        "readings far off ('identify --robust'), and unloading that no column branch tells."
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic, references_of
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, short
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.noise.model_form import ModelForm, model_form, widened
 from sk120stiff.identify.positions.noise.sizes import (
@@ -105,7 +105,7 @@ class Calibration(Fit):
     def size(self) -> str:
         """See `Fit.size`: of lengths, or of angles where nothing else was read."""
         gap = self.problem.of_channels.undo(self.residual)[self.problem.counted]
-        return f"{1e6 * np.sqrt(np.mean(gap**2)):.3g} {self.problem.unit} rms"
+        return f"{short(1e6 * np.sqrt(np.mean(gap**2)))} {self.problem.unit} rms"
 
     @property
     def per_axis(self) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
+from sk120stiff.errors import short
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.beforehand import Beforehand
@@ -116,7 +117,7 @@ def _source(fit: Fit, noise: Yardstick) -> str:
     measurements = fit.problem.measurements
     said = "noise unknown"
     if noise.sigma is not None:
-        said = f"noise {noise.sigma * 1e6:.3g} µm per axis, by {noise.name}"
+        said = f"noise {short(noise.sigma * 1e6)} µm per axis, by {noise.name}"
     poses = len(measurements.poses)
     return f"{measurements.n_readings} readings at {poses} poses; {said}"
 

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array, Integers
-from sk120stiff.errors import InputError, two_digits
+from sk120stiff.errors import InputError, short, two_digits
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import read_apart
 from sk120stiff.measurements.noise.forces import ForceWhitener, by_force_of
@@ -273,7 +273,7 @@ def decided(noise: NoiseModel, measurements: Measurements) -> tuple[str, ...]:
         )
     if 0 < noise.freedom < np.inf and noise.known:
         said.append(
-            f"No uncertainty is stated; repeats give {noise.sigma * 1e6:.3g} µm for one reading "
+            f"No uncertainty is stated; repeats give {short(noise.sigma * 1e6)} µm for one reading "
             f"({noise.freedom:.0f} degrees of freedom)."
         )
     if noise.growth > 0 and measurements.noise.growth is None:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import optimize
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
+from sk120stiff.errors import InputError, short
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.noise.rays import frames_of_rays
 from sk120stiff.measurements.noise_statement import Instrument
@@ -154,8 +154,8 @@ def _placed(instrument: Instrument, points: Array) -> str:
     _, along, across = instrument.at(points)
     x, y, z = instrument.place
     return (
-        f"{SEEN} ({x:.2f}, {y:.2f}, {z:.2f}) m, with {1e6 * np.median(along):.3g} µm along its "
-        f"ray and {1e6 * np.median(across):.3g} µm across it"
+        f"{SEEN} ({x:.2f}, {y:.2f}, {z:.2f}) m, with {short(1e6 * np.median(along))} µm along its "
+        f"ray and {short(1e6 * np.median(across))} µm across it"
     )
 
 

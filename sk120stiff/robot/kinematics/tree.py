@@ -91,8 +91,10 @@ class Tree:
             )
         return self.joint_names.index(name)
 
-    def body(self, frame: str) -> tuple[int, Array]:
+    def body(self, frame: str, *, where: str | None = None) -> tuple[int, Array]:
         """Moving joint that carries a frame (-1: none), and the frame's (4, 4) placement on it [m].
+
+        `where` the frame was asked for is said of one that is not there.
 
         Raises:
             InputError: There is no such frame; the existing ones are listed.
@@ -100,6 +102,7 @@ class Tree:
         if frame not in self.frame_names:
             raise InputError(
                 f"there is no frame {frame!r}{meant(frame, self.frame_names)}",
+                where=where,
                 remedy=f"Frames are: {', '.join(self.frame_names)}.",
             )
         found = self._model.frames[self._model.getFrameId(frame, pin.FrameType.BODY)]

@@ -32,7 +32,7 @@ from sk120stiff.cli.commands.compensate.path import (
     with_joints,
 )
 from sk120stiff.cli.frame import Answer
-from sk120stiff.cli.opening import model_for, open_model, pose_of
+from sk120stiff.cli.opening import frame_at, model_for, open_model, pose_of
 from sk120stiff.cli.options import AtOption, ModelArgument
 from sk120stiff.cli.path_words import (
     branch_keys,
@@ -177,6 +177,7 @@ def command(
     }
     believed = open_model(model)
     robot = believed.robot
+    at = frame_at(robot, at)
     movable = None if only is None else movable_joints(believed, only)
     options = PathOptions(frame, wrench, load_axes, tool_rpy, chord, step)
     opened = open_path(path, robot, options)
@@ -204,14 +205,14 @@ def command(
         given = given.turned_to_base(robot, nominal, at)
     if given.joints is not None and given.position is not None:
         facts = (*facts, "Its joints are driven; the positions beside them agree.")
-    facts = (*facts, *(point_words(believed) if at in (None, robot.tool_frame) else ()))
+    facts = (*facts, *(point_words(believed) if at == robot.tool_frame else ()))
     if language is not None and not robot.controller.axes:
         facts = (*facts, f"In the program {convention(robot)}.")
     if language is not None:
         stated = not language.in_part_frame(language.with_defaults(chosen))
         facts = (*facts, *frame_words(robot, part, stated=stated))
     assumed = assumed_at_work(robot, around)
-    held_at = given.wrench if at in (None, robot.tool_frame) else None
+    held_at = given.wrench if at == robot.tool_frame else None
     wrong = infeasible(robot, around, nominal, given, held_at)
     branch = branch_of(robot, nominal, ground)
     warn_of_branch(branch, given)

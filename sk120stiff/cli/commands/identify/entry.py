@@ -24,7 +24,7 @@ from sk120stiff.data_checks import (
     without_wild,
 )
 from sk120stiff.effects import CATALOGUE
-from sk120stiff.errors import InputError, two_digits, warn
+from sk120stiff.errors import InputError, short, two_digits, warn
 from sk120stiff.files import will_write
 from sk120stiff.identify import (
     Calibration,
@@ -270,7 +270,7 @@ def _parts(
     parts: list[object] = [fit_report(found, profile=intervals)]
     if error is not None:
         parts.append(
-            f"At poses left out of the fit: {error.rms * 1e6:.3g} ± "
+            f"At poses left out of the fit: {short(error.rms * 1e6)} ± "
             f"{two_digits(error.std * 1e6)} µm rms per axis ({error.folds} parts)."
         )
     if lines:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.cli.tables import plan_table, table
-from sk120stiff.errors import listed
+from sk120stiff.errors import listed, short
 from sk120stiff.plan import Plan, PlanOfPositions
 
 Told = tuple[dict[str, object], list[object]]
@@ -78,7 +78,7 @@ def _parameters(plan: Plan) -> Told:
     ]
     if isinstance(plan, PlanOfPositions) and np.isfinite(plan.foretold):
         document["foretold_um"] = 1e6 * plan.foretold
-        size = f"{float(f'{1e6 * plan.foretold:.3g}'):g} um"
+        size = f"{short(1e6 * plan.foretold)} um"
         said.append(
             f"Where the marker stands will be foretold to {size} (standard error per axis, over "
             "all poses to choose from), as far as the model's laws hold."
