@@ -28,6 +28,7 @@ class ApproachSide(Sequential, Geometric):
     axes: ClassVar[str] = "the axis of the joint itself"
     needs: ClassVar[str] = "positions in a known order"
     only_absolute: ClassVar[bool] = True
+    of_transmission: ClassVar[bool] = True
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> ApproachSide:

@@ -66,6 +66,8 @@ class Effect(ABC):
             (class attribute).
         rare: Few arms have what does it (class attribute).
         of_gear: A law of a joint's gear: what one leaves over looks like another (class attribute).
+        of_transmission: An error of what turns the joint, and not of its axis or of a spring (class
+            attribute).
         twins: Names of effects that some experiments make one with this one, at the same place and
             with either sign (class attribute).
         needs, advice: What readings must hold for its law, in words; what to do about it before
@@ -101,6 +103,7 @@ class Effect(ABC):
     joint_spring: ClassVar[bool] = False
     rare: ClassVar[bool] = False
     of_gear: ClassVar[bool] = False
+    of_transmission: ClassVar[bool] = False
     twins: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[str] = ""
     advice: ClassVar[str] = ""

@@ -28,6 +28,7 @@ class JointCoupling(Geometric):
     axes: ClassVar[str] = "axes of the two joints"
     needs: ClassVar[str] = "positions"
     only_absolute: ClassVar[bool] = True
+    of_transmission: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

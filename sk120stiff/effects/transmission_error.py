@@ -26,6 +26,7 @@ class TransmissionError(Geometric):
     axes: ClassVar[str] = "the axis of the joint itself"
     needs: ClassVar[str] = "positions"
     only_absolute: ClassVar[bool] = True
+    of_transmission: ClassVar[bool] = True
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:

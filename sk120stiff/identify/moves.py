@@ -53,18 +53,6 @@ class Moves:
             apart if by_form is None else by_form,
         )
 
-    def scaled(self, scale: Array) -> Moves:
-        """The same in other units: (P,) of one in the other."""
-        both = np.outer(scale, scale)
-        return Moves(
-            self.models * scale,
-            self.left_out * scale,
-            self.omitted * both,
-            self.foreign * both,
-            self.parts * both,
-            self.by_form * both,
-        )
-
     @property
     def covariance(self) -> Array:
         """(P, P) of all together, each model's move for itself."""

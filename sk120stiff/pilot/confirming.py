@@ -19,12 +19,10 @@ class Confirmation:
         agrees: It names the same, and nothing else, as sure as that no further reading tells it
             from another; or, of a class, one that holds it.
         verdict: Its verdict, or why it could not judge.
-        names: What it names, alternatives with a bar between them.
     """
 
     agrees: bool
     verdict: str
-    names: tuple[str, ...]
 
 
 def confirmed(model: Model, readings: Measurements, stop: Stop) -> Confirmation:
@@ -32,11 +30,11 @@ def confirmed(model: Model, readings: Measurements, stop: Stop) -> Confirmation:
     try:
         answer = explain(model, readings, options=Options())
     except (InputError, Refusal) as error:
-        return Confirmation(False, str(error), ())
+        return Confirmation(False, str(error))
     found = [{f.effect.id, *f.alternatives} for f in answer.findings]
     wanted = {name for each in stop.names for name in each.split(" with ")}
     every = all(group & wanted for group in found) and bool(found)
     if stop.reason == "named":
         every = every and all(any(name in group for group in found) for name in wanted)
         every = every and all(finding.settled for finding in answer.findings)
-    return Confirmation(every, answer.verdict, tuple("|".join(sorted(group)) for group in found))
+    return Confirmation(every, answer.verdict)

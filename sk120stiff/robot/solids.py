@@ -25,7 +25,6 @@ from sk120stiff.robot.visuals import Visual, read_mesh, shapes_of
 
 # Of the stretched arm. Half a link's thickness is 0.034 of it on a UR10, 0.046 on a Panda.
 CAPSULE_RADIUS = 0.04
-KINDS = ("box", "capsule", "cylinder", "hull", "plane", "sphere")
 _KNOWN: WeakKeyDictionary[Robot, Body] = WeakKeyDictionary()
 
 
@@ -37,7 +36,8 @@ class Solid:
         name: What to call it in a message.
         frame: The frame that carries it.
         T_frame_solid: (4, 4) placement [m].
-        kind: One of `KINDS`; all that lies below its xy plane (``plane``).
+        kind: ``box``, ``capsule``, ``cylinder``, ``hull``, ``sphere``; all that lies below its xy
+            plane (``plane``).
         size: box: x, y, z; cylinder and capsule (along z, centred): radius, length between the
             ends or the centres of the caps; sphere: radius [m].
         points: (V, 3) corners of a ``hull`` [m].

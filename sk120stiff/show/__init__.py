@@ -17,7 +17,7 @@ Report (`sk120stiff.show.report`)
 
 Scene (`sk120stiff.show.scene`)
     ``scene_of_model(model, data, models={"before": m0, "after": m1})``, or by hand
-    ``Scene(robot, elastic=Elastic.of_springs(robot, springs), poses=[ScenePose(...)])``; then
+    ``Scene(robot, elastic=Elastic.of_model(model), poses=[ScenePose(...)])``; then
     ``static_scene(path, scene)`` for a self-contained page with sliders, ``scene_html(scene)`` for
     its text, and the scene itself shows in a notebook.
 

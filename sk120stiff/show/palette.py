@@ -53,11 +53,6 @@ DARK: Final = {
 SOFT: Final = "#C8102E"
 SOFT_TO_STIFF: Final = (SOFT, "#E07B39", "#B59A5B", "#6E93AE", "#2A6FBF")
 
-#: Colours for x, y and z wherever axes are told apart.
-AXES: Final = (VERMILION, GREEN, BLUE)
-#: For series without a meaning of their own, in this order.
-SERIES: Final = (BLUE, ORANGE, GREEN, VERMILION, SKY, PURPLE, BLACK)
-
 
 def steps(count: int) -> tuple[str, ...]:
     """Colours of the gap as a model grows in `count` steps: earlier ones grey, the last its own."""

@@ -42,6 +42,7 @@ class LostMotion(GearEffect, Switching):
     sided: bool = False
     wide: bool = field(default=False, compare=False)
     name: ClassVar[str] = "lost_motion"
+    of_transmission: ClassVar[bool] = True
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = (
         "q - q_0 = torque / K + b * (s(torque) - s(torque of the weight)), s the sign, or tanh "

@@ -29,13 +29,11 @@ class WithinPoses:
     """What single poses tell of a whitened gap.
 
     Attributes:
-        noise: What it is held against.
         orders: Linear, constant and curved parts, each beyond the ones before it.
         own: What poses may have of their own, each beyond the model alone; empty where nothing
             tells the noise.
     """
 
-    noise: Yardstick
     orders: tuple[OrderShare, ...]
     own: tuple[OwnAtPoses, ...]
 
@@ -80,7 +78,7 @@ def within_poses(
             square, used = left_over(white, inside, whiten(pose_columns(basis)), group)
             taken, more = left[0] - square, used - rank[0]
             own.append(OwnAtPoses(name, taken / scale, more, noise.tail(taken, more)))
-    return WithinPoses(noise, orders, tuple(own))
+    return WithinPoses(orders, tuple(own))
 
 
 def _of_own(load_cases: LoadCases, *, drawn: bool) -> Iterator[tuple[Own, Array]]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from sk120stiff.arrays import Array
-from sk120stiff.errors import InputError
-from sk120stiff.robot import Mechanism, Robot
+from sk120stiff.robot import Mechanism
 from sk120stiff.stiffness import ConstantCompliance
 
 if TYPE_CHECKING:
@@ -47,45 +44,6 @@ class Elastic:
         """(m + v,) values of all joints of the robot, then of the virtual ones, for z (n,)."""
         coupling = self.mechanism.elastic or self.mechanism.coupling
         return coupling.motion(z).q
-
-    @classmethod
-    def of_springs(
-        cls,
-        robot: Robot,
-        springs: ArrayLike | Mapping[str, float],
-        *,
-        frame: str | None = None,
-        label: str = "joint springs",
-    ) -> Elastic:
-        """Independent springs at the actuated joints.
-
-        Args:
-            springs: (n,) stiffness [N·m/rad or N/m], infinite where a joint is rigid; or joint name
-                → stiffness, every other joint rigid.
-            frame: Frame that carries the point; the tool frame else.
-
-        Raises:
-            InputError: Another number of springs, an unknown joint, or a stiffness that is not
-                above zero.
-        """
-        if isinstance(springs, Mapping):
-            unknown = sorted(set(springs) - set(robot.actuated))
-            if unknown:
-                raise InputError(
-                    f"there is no actuated joint {unknown[0]!r}",
-                    remedy=f"Actuated joints are: {', '.join(robot.actuated)}.",
-                )
-            values = np.array([springs.get(name, np.inf) for name in robot.actuated])
-        else:
-            values = np.asarray(springs, dtype=float)
-        if values.shape != (robot.n,):
-            raise InputError(f"{values.size} springs given for {robot.n} actuated joints")
-        if not (values > 0.0).all():
-            raise InputError("a joint spring must be above zero", where=label)
-        arm = ConstantCompliance(
-            robot.mechanism(frame), np.diag(1.0 / values), gravity=robot.gravity_in_base
-        )
-        return cls(arm, label)
 
     @classmethod
     def of_model(cls, model: Model, *, label: str = "") -> Elastic:

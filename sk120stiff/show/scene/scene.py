@@ -56,7 +56,7 @@ class Scene:
 
     Attributes:
         robot: The rigid robot.
-        elastic: What yields; see `Elastic.of_springs`.
+        elastic: What yields; see `Elastic.of_model`.
         poses: Poses of the list, usually those of the data.
         title, subtitle: Headings of the page; the robot's name by default.
         point: (3,) the point, in the frame that `elastic` ends in [m].

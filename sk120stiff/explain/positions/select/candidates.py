@@ -173,7 +173,7 @@ def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:
 
 def family(effect: Effect) -> str:
     """What a cause belongs to, in one word."""
-    if effect.name in ("transmission_error", "joint_coupling", "approach_side", "lost_motion"):
+    if effect.of_transmission:
         return "transmission"
     if isinstance(effect, Elastic):
         return COMPLIANCE

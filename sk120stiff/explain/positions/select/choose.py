@@ -9,6 +9,8 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Mask
 from sk120stiff.effects import Effect, Elastic
+from sk120stiff.effects.geometry import JointOffset
+from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.explain.positions.select.linear import Linear
 
 CLEAR = 3.0  # logarithm of odds beyond those of one among all candidates
@@ -192,7 +194,7 @@ def _zeros(linear: Linear, chosen: tuple[int, ...], dropped: Set[int]) -> tuple[
 
     Beside the large gap at the start six numbers may take off more than one; in the end one tells.
     """
-    zeros = [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_offset"]
+    zeros = [e for e, effect in enumerate(linear.candidates) if isinstance(effect, JointOffset)]
     for e in [frame for frame in frames_of(linear) if frame in chosen]:
         noise, rest = linear.noise(chosen), linear.less(chosen, e)
         others = {z: linear.score((*rest, z), noise) for z in zeros if z not in {*chosen, *dropped}}
@@ -238,7 +240,7 @@ def _beside_frames(
 
 def frames_of(linear: Linear) -> list[int]:
     """Candidates that are frames of joints."""
-    return [e for e, effect in enumerate(linear.candidates) if effect.name == "joint_frame"]
+    return [e for e, effect in enumerate(linear.candidates) if isinstance(effect, JointFrame)]
 
 
 def threshold(linear: Linear) -> float:
@@ -253,7 +255,7 @@ def entry_price(linear: Linear, e: int) -> float:
 
 def usual(effect: Effect) -> float:
     """Logarithm of the odds of meeting a cause, over those of one as good as any."""
-    if effect.joint_spring or effect.name == "joint_frame":
+    if effect.joint_spring or isinstance(effect, JointFrame):
         return USUAL
     return -USUAL if effect.rare else 0.0
 
