@@ -9,18 +9,24 @@ from typing import Any
 
 import numpy as np
 import yaml
-from numpy.typing import ArrayLike
 
-from sk120stiff import files, units
+from sk120stiff import files
 from sk120stiff.arrays import Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import of_columns
+from sk120stiff.measurements.files.entries import (
+    Column,
+    column,
+    digits,
+    instrument_entry,
+    length_entry,
+    point_entry,
+)
 from sk120stiff.measurements.files.writing_positions import (
     columns_of_positions,
     settings_of_positions,
 )
-from sk120stiff.measurements.noise_statement import Instrument
 from sk120stiff.measurements.table.columns import (
     DIRECTIONS,
     DISPLACEMENTS,
@@ -30,8 +36,6 @@ from sk120stiff.measurements.table.columns import (
     UNCERTAINTIES,
 )
 from sk120stiff.measurements.zero import of_displacement
-
-_Column = tuple[str, Iterable[str]]
 
 
 def write_measurements(
@@ -119,17 +123,17 @@ def check_name(target: Path) -> None:
 
 def columns_of(
     m: Measurements, angle: str, length: str, measured: tuple[str, ...]
-) -> Iterable[_Column]:
+) -> Iterable[Column]:
     """Headers with units, and cells, of the CSV file; `measured` names the displacements."""
     yield "pose", m.pose
     for k, name in enumerate(m.joint_names):
         kind = m.joint_kinds[k]
-        yield _numbers(name, m.joints[:, k], angle if kind == "angle" else length, kind)
+        yield column(name, m.joints[:, k], angle if kind == "angle" else length, kind)
     for k, name in enumerate(FORCES):
-        yield _numbers(name, m.wrench[:, k], "N", "force")
+        yield column(name, m.wrench[:, k], "N", "force")
     if np.any(m.wrench[:, 3:]):
         for k, name in enumerate(MOMENTS):
-            yield _numbers(name, m.wrench[:, 3 + k], "N*m", "moment")
+            yield column(name, m.wrench[:, 3 + k], "N*m", "moment")
     sigma = m.sigma
     if sigma is not None and m.displacement is not None and measured == DISPLACEMENTS:
         sigma = of_displacement(sigma, m.zero_count)
@@ -141,18 +145,18 @@ def columns_of(
                 "file holds either",
                 remedy="Write them to two files.",
             )
-        yield _numbers("d", of_columns(m.directions, moved), length, "length")
+        yield column("d", of_columns(m.directions, moved), length, "length")
         for k, name in enumerate(DIRECTIONS):
-            yield name, map(_digits, m.directions[:, k])
+            yield name, map(digits, m.directions[:, k])
         moved = None
     for names, values in ((measured, moved), (UNCERTAINTIES, sigma)):
         if values is not None:
             for k, name in enumerate(names):
-                yield _numbers(name, values[:, k], length, "length")
+                yield column(name, values[:, k], length, "length")
     if m.order is not None:
-        yield "order", map(_digits, m.order)
+        yield "order", map(digits, m.order)
     if m.time is not None:
-        yield "time[s]", map(_digits, m.time)
+        yield "time[s]", map(digits, m.time)
     if m.branch is not None:
         yield "branch", m.branch
     if m.repeat is not None:
@@ -163,17 +167,7 @@ def columns_of(
     yield from m.extra.items()
 
 
-def _shortest(si: float, unit: str) -> float:
-    """A length without the rounding of its unit: 0.015 mm, not 0.015000000000000001."""
-    if unit == "m":
-        return si
-    whole = float(units.from_si(si, unit, "length"))
-    short = float(f"{whole:.15g}")
-    back = float(units.to_si(short, unit, "length"))
-    return short if abs(back - si) <= 2.0 * np.spacing(si) else whole
-
-
-def _zero_columns(m: Measurements) -> Iterable[_Column]:
+def _zero_columns(m: Measurements) -> Iterable[Column]:
     """What the reader would not guess of the zero readings by itself."""
     plain = np.arange(m.n_readings) if m.zero == "separate" else m.pose_index
     if not _same_grouping(plain, m.zero_group):
@@ -181,26 +175,14 @@ def _zero_columns(m: Measurements) -> Iterable[_Column]:
     if np.any(m.zero_count != 1):
         yield "zero_count", map(str, m.zero_count)
     if m.zero_order is not None:
-        yield "zero_order", map(_digits, m.zero_order)
+        yield "zero_order", map(digits, m.zero_order)
     if m.zero_time is not None:
-        yield "zero_time[s]", map(_digits, m.zero_time)
+        yield "zero_time[s]", map(digits, m.zero_time)
 
 
 def _same_grouping(a: Integers, b: Integers) -> bool:
     pairs = len(set(zip(a.tolist(), b.tolist(), strict=True)))
     return pairs == len(np.unique(a)) == len(np.unique(b))
-
-
-def _numbers(name: str, values: ArrayLike, unit: str, kind: str) -> _Column:
-    numbers = np.array(values, dtype=np.float64)
-    known = np.isfinite(numbers)  # else it was not read
-    numbers[known] = units.from_si(numbers[known], unit, kind)
-    return f"{name}[{unit}]", map(_digits, numbers)
-
-
-def _digits(value: float) -> str:
-    """The shortest text that reads back as the same float; NaN is an empty cell."""
-    return "" if np.isnan(value) else repr(float(value))
 
 
 def _named(m: Measurements, folder: Path) -> dict[str, Any]:
@@ -221,17 +203,18 @@ def _beside(m: Measurements) -> dict[str, Any]:
 
 def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
     settings = _named(m, folder)
-    settings["point"] = _point(m.point, length)
+    settings["point"] = point_entry(m.point, length)
     settings["force"] = {"frame": m.force_frame}
     if not np.array_equal(m.force_point, m.point):
-        settings["force"]["point"] = _point(m.force_point, length)
+        settings["force"]["point"] = point_entry(m.force_point, length)
     settings["displacement"] = {"frame": m.displacement_frame, "zero": m.zero}
     noise: dict[str, Any] = {}
     if m.noise.sigma is not None:
-        noise["sigma"] = _shortest(m.noise.sigma, length)
+        noise["sigma"] = length_entry(m.noise.sigma, length)
         noise["unit"] = length
     if m.noise.instrument is not None:
-        noise["instrument"] = _instrument(m.noise.instrument, length)
+        stated = m.noise.instrument
+        noise["instrument"] = point_entry(stated.place, length) | instrument_entry(stated, length)
         noise["unit"] = length
     if m.noise.growth is not None:
         noise["growth"] = m.noise.growth
@@ -240,17 +223,6 @@ def _settings(m: Measurements, folder: Path, length: str) -> dict[str, Any]:
     if noise:
         settings["noise"] = noise
     return settings | _beside(m)
-
-
-def _instrument(stated: Instrument, length: str) -> dict[str, Any]:
-    sizes = ("along", "across", "along_per_m", "across_per_m")
-    return _point(stated.place, length) | {
-        name: _shortest(value, length) for name in sizes if (value := getattr(stated, name)) > 0.0
-    }
-
-
-def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:
-    return {"xyz": [float(x) for x in units.from_si(xyz, length, "length")], "unit": length}
 
 
 def robot_seen_from(robot: str | None, folder: Path) -> str | None:

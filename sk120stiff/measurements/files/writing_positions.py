@@ -6,14 +6,20 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from sk120stiff import units
-from sk120stiff.arrays import Array
 from sk120stiff.measurements.absolute import Absolute
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.noise_statement import Instrument
+from sk120stiff.measurements.files.entries import (
+    Column,
+    bare,
+    column,
+    columns,
+    digits,
+    instrument_entry,
+    length_entry,
+    point_entry,
+)
 from sk120stiff.measurements.table.columns import (
     ANCHORS,
     DIRECTIONS,
@@ -28,22 +34,22 @@ from sk120stiff.measurements.table.columns import (
 )
 from sk120stiff.robot.rotations import rotation_vector
 
-Written = Iterable[tuple[str, Iterable[str]]]
 
-
-def columns_of_positions(m: Measurements, said: Absolute, angle: str, length: str) -> Written:
+def columns_of_positions(
+    m: Measurements, said: Absolute, angle: str, length: str
+) -> Iterable[Column]:
     """Headers with units, and cells; what was not read is a blank cell."""
     yield "pose", m.pose
     for k, name in enumerate(m.joint_names):
         if name not in m.spare:
             kind = m.joint_kinds[k]
-            yield _column(name, m.joints[:, k], angle if kind == "angle" else length, kind)
+            yield column(name, m.joints[:, k], angle if kind == "angle" else length, kind)
     if m.wrench.any():
-        yield from _columns(FORCES, m.wrench[:, :3], "N", "force")
+        yield from columns(FORCES, m.wrench[:, :3], "N", "force")
     if m.wrench[:, 3:].any():
-        yield from _columns(MOMENTS, m.wrench[:, 3:], "N*m", "moment")
+        yield from columns(MOMENTS, m.wrench[:, 3:], "N*m", "moment")
     if said.payload.any():
-        yield "payload[kg]", map(_digits, said.payload)
+        yield "payload[kg]", map(digits, said.payload)
     if any(said.markers):
         yield "marker", said.markers
     if said.series is not None:
@@ -52,10 +58,10 @@ def columns_of_positions(m: Measurements, said: Absolute, angle: str, length: st
         yield "station", said.stations
     yield from _channels(said.channels, length)
     if said.temperature is not None:
-        yield "temperature[degC]", map(_digits, said.temperature)
+        yield "temperature[degC]", map(digits, said.temperature)
     for header, values in (("order", m.order), ("time[s]", m.time)):
         if values is not None:
-            yield header, map(_digits, values)
+            yield header, map(digits, values)
     if m.branch is not None:
         yield "branch", m.branch
     if m.repeat is not None:
@@ -65,29 +71,29 @@ def columns_of_positions(m: Measurements, said: Absolute, angle: str, length: st
     yield from m.extra.items()
 
 
-def _channels(read: Channels, length: str) -> Written:
+def _channels(read: Channels, length: str) -> Iterable[Column]:
     if read.position is not None:
-        yield from _columns(POSITIONS, read.position, length, "length")
+        yield from columns(POSITIONS, read.position, length, "length")
     if read.displacement is not None:
-        yield from _columns(DISPLACEMENTS, read.displacement, length, "length")
+        yield from columns(DISPLACEMENTS, read.displacement, length, "length")
     if read.sigma_of_rows is not None and read.rays is None:
-        yield from _columns(UNCERTAINTIES, read.sigma_of_rows, length, "length")
+        yield from columns(UNCERTAINTIES, read.sigma_of_rows, length, "length")
     if read.rotation is not None:
         known = np.array([np.isfinite(turn).all() for turn in read.rotation])
         turns = np.full((len(known), 3), np.nan)
         turns[known] = rotation_vector(read.rotation[known])
-        yield from _columns(ROTATION_VECTOR, turns, "rad", "angle")
+        yield from columns(ROTATION_VECTOR, turns, "rad", "angle")
     if read.turn is not None:
-        yield from _columns(TURNS, read.turn, "mrad", "angle")
+        yield from columns(TURNS, read.turn, "mrad", "angle")
     if read.distance is not None and read.anchor is not None:
-        yield _column("l", read.distance, length, "length")
-        yield from _columns(ANCHORS, read.anchor, "m", "length")
+        yield column("l", read.distance, length, "length")
+        yield from columns(ANCHORS, read.anchor, "m", "length")
     if read.shift is not None and read.along is not None:
-        yield _column("d", read.shift, length, "length")
-        yield from _bare(DIRECTIONS, read.along)
+        yield column("d", read.shift, length, "length")
+        yield from bare(DIRECTIONS, read.along)
     if read.inclination is not None and read.level is not None:
-        yield _column("inc", read.inclination, "deg", "angle")
-        yield from _bare(LEVELS, read.level)
+        yield column("inc", read.inclination, "deg", "angle")
+        yield from bare(LEVELS, read.level)
 
 
 def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[str, Any]:
@@ -99,65 +105,34 @@ def settings_of_positions(m: Measurements, said: Absolute, length: str) -> dict[
     places = {name: said.point[said.markers.index(name)] for name in dict.fromkeys(said.markers)}
     same = bool((said.point == said.point[0]).all())
     if not same:
-        settings["points"] = {n: {**_point(at, length), **fit} for n, at in places.items()}
+        settings["points"] = {n: {**point_entry(at, length), **fit} for n, at in places.items()}
     else:
-        settings["point"] = {**_point(said.point[0], length), **fit}
+        settings["point"] = {**point_entry(said.point[0], length), **fit}
     hung: dict[str, Any] = (
-        {"point": _point(said.payload_point, length)} if said.payload_placed else {}
+        {"point": point_entry(said.payload_point, length)} if said.payload_placed else {}
     )
     hung |= {"fit": True} if said.fit_payload else {}
     settings |= {"payload": hung} if hung else {}
     if m.wrench.any():
         settings["force"] = {"frame": m.force_frame}
         if not np.array_equal(m.force_point, m.point):
-            settings["force"]["point"] = _point(m.force_point, length)
+            settings["force"]["point"] = point_entry(m.force_point, length)
     stated = said.channels.sigma
     size, turn = stated.get("position"), stated.get("rotation")
     noise: dict[str, Any] = {}
     if size is not None:
-        noise |= {"sigma": float(f"{1e6 * size:.12g}"), "unit": "um"}
+        noise |= {"sigma": length_entry(size, "um"), "unit": "um"}
         since_zero = max(stated.get(kind, size) for kind in ("shift", "displacement"))
         if since_zero > size:  # two readings of the gauge
             settings["displacement"] = {"frame": m.displacement_frame, "zero": "separate"}
     if m.noise.instrument is not None:
-        noise = _of_instrument(m.noise.instrument, said.frame == "unknown")
+        place = {} if said.frame == "unknown" else point_entry(m.noise.instrument.place, "m")
+        noise = {
+            "unit": "um",
+            "instrument": {**place, **instrument_entry(m.noise.instrument, "um")},
+        }
     if turn is not None:
         noise |= {"rotation": float(f"{1e6 * turn:.12g}"), "rotation_unit": "urad"}
     if "displacement" not in settings and m.displacement_frame != "base":
         settings["displacement"] = {"frame": m.displacement_frame}
     return settings | ({"noise": noise} if noise else {})
-
-
-def _of_instrument(instrument: Instrument, at_origin: bool) -> dict[str, Any]:
-    """The entry `noise` of what is sharper along its ray."""
-    sizes = ("along", "across", "along_per_m", "across_per_m")
-    told = {name: float(f"{1e6 * getattr(instrument, name):.12g}") for name in sizes}
-    place = {} if at_origin else {"xyz": list(map(float, instrument.place)), "unit": "m"}
-    return {"unit": "um", "instrument": {**place, **{k: v for k, v in told.items() if v}}}
-
-
-def _point(xyz: ArrayLike, length: str) -> dict[str, Any]:
-    shown = units.from_si(xyz, length, "length")
-    return {"xyz": [float(f"{x:.15g}") + 0.0 for x in shown], "unit": length}
-
-
-def _columns(names: tuple[str, ...], values: Array, unit: str, kind: str) -> Written:
-    for k, name in enumerate(names):
-        yield _column(name, values[:, k], unit, kind)
-
-
-def _bare(names: tuple[str, ...], values: Array) -> Written:
-    for k, name in enumerate(names):
-        yield name, map(_digits, values[:, k])
-
-
-def _column(name: str, values: ArrayLike, unit: str, kind: str) -> tuple[str, Iterable[str]]:
-    numbers = np.array(values, dtype=np.float64)
-    known = np.isfinite(numbers)  # else it was not read
-    numbers[known] = units.from_si(numbers[known], unit, kind)
-    return f"{name}[{unit}]", map(_digits, numbers)
-
-
-def _digits(value: float) -> str:
-    """Fifteen digits, without the rounding of a unit; NaN is an empty cell."""
-    return "" if np.isnan(value) else f"{value + 0.0:.15g}"
