@@ -59,15 +59,12 @@ class Effect(ABC):
         former: Names under which files of earlier versions hold a parameter with the other sign,
             and its name now (class attribute).
         random_effects: The parameters are draws of one size (class attribute).
-        bends_a_spring: It changes the spring of the joint at which it acts, so there must be one
-            (class attribute).
+        bends_a_spring: It changes the spring of its joint: there must be one (class attribute).
         inexact: Share of what it explains by which real parts depart from it (class attribute).
-        joint_spring: Its one parameter is the stiffness of the actuated joint at which it acts
-            (class attribute).
+        joint_spring: Its one parameter is the stiffness of its actuated joint (class attribute).
         rare: Few arms have what does it (class attribute).
         of_gear: A law of a joint's gear: what one leaves over looks like another (class attribute).
-        of_transmission: An error of what turns the joint, and not of its axis or of a spring (class
-            attribute).
+        of_transmission: An error of what turns the joint, not of its axis (class attribute).
         twins: Names of effects that some experiments make one with this one, at the same place and
             with either sign (class attribute).
         needs, advice: What readings must hold for its law, in words; what to do about it before

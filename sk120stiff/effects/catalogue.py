@@ -45,6 +45,7 @@ from sk120stiff.effects.payload_mass import PayloadMass
 from sk120stiff.effects.places import USUAL_PLACES
 from sk120stiff.effects.reading_drift import ReadingDrift
 from sk120stiff.effects.target_rotation import TargetRotation
+from sk120stiff.effects.thermal_drift import ThermalDrift
 from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.effects.tool_compliance import ToolCompliance
 from sk120stiff.effects.tracker import ReadingRotation, ReadingScale, ZeroOffset
@@ -94,6 +95,7 @@ OWN: tuple[type[Effect], ...] = (
     MarkerShift,
     TargetRotation,
     ThermalGrowth,
+    ThermalDrift,
 )
 
 

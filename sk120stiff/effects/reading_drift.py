@@ -53,7 +53,7 @@ class ReadingDrift(Counting, ReadingError):
         "things warm up"
     )
     says: ClassVar[str] = "The readings drift as the measurement goes on."
-    axes: ClassVar[str] = "axes of the base frame"
+    axes: ClassVar[str] = "axes of the base frame; of positions the axes in which they are read"
     also: ClassVar[str] = (
         "rate_x_over_40: the rate at first of a drift that dies away over 40 readings (40 s where "
         "there is a clock), as exp(-t / 40); several add up"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
 import numpy as np
@@ -17,6 +17,7 @@ from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.reference import TEMPERATURE, TIME
 from sk120stiff.robot import Robot, VirtualJoint
+from sk120stiff.robot.anatomy import arm_joint
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,14 @@ class ThermalGrowth(Counting, Imposed):
 
     At the reference it is as the model's geometry has it: at the mean temperature, or the first
     moment, of the readings that the model was identified from.
+
+    Attributes:
+        thermal: By the temperature, not by the clock.
+        length: Of the link [m], with which it grows.
     """
 
     thermal: bool = False
+    length: float = field(default=1.0, compare=False)
     name: ClassVar[str] = "thermal_growth"
     place: ClassVar[str] = "a link"
     equation: ClassVar[str] = "length_true = length + g * (temperature or time since the reference)"
@@ -38,7 +44,7 @@ class ThermalGrowth(Counting, Imposed):
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """By the temperature where there is one, else by the clock."""
-        return cls(where, scale_of(robot), options.thermal)
+        return cls(where, scale_of(robot), options.thermal, arm_joint(robot, where).length)
 
     @classmethod
     def options_of(cls, parameters: Mapping[str, str]) -> Options:
@@ -47,12 +53,15 @@ class ThermalGrowth(Counting, Imposed):
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
-        """Growth per kelvin or per second; steel of 1 m grows by 11 µm per kelvin."""
-        unit, typical = ("m/K", 1e-5) if self.thermal else ("m/s", 1e-8)
+        """Growth per kelvin or per second; steel of 1 m grows by 11 µm per kelvin.
+
+        A link whose motor heats it grows by more for each kelvin of a room.
+        """
+        unit, of_metre = ("m/K", 1e-5) if self.thermal else ("m/s", 1e-8)
+        typical = of_metre * self.length
         return (
             ParameterSpec(
-                "growth", unit, unit, plausible=10 * typical * self.scale,
-                typical=typical * self.scale,
+                "growth", unit, unit, plausible=10 * typical, typical=typical,
                 meaning="growth of the link "
                 + ("per kelvin" if self.thermal else "per second of the clock"),
             ),

@@ -198,7 +198,8 @@ def _with(marker: list[float] | None = None, payload: tuple[float, Array] | None
 
         def pose(q: Array) -> tuple[Array, Array, Array]:
             x, R, energy = bare(q)
-            return x, R, energy + mass * G * (x + R @ (centre - arm.marker))[:, 2]
+            weight = G * np.reshape(mass, (-1, *(1,) * (q.ndim - 2)))
+            return x, R, energy + weight * (x + R @ (centre - arm.marker))[..., 2]
 
         arm.pose = pose  # type: ignore[method-assign]
     return arm

@@ -24,6 +24,7 @@ WINDOW = 3.0  # loss of the logarithm of probability up to which others are look
 WORTH = 9.0  # loss up to which a set weighs at all
 OPENED = 60  # sets about which others are looked for
 HALF = 0.5  # of how often sets hold both of two names or neither, if these have nothing in common
+HELD_BY_ALL = 0.99  # probability beyond which nothing stands in the place of a name
 ASKED = 3  # sets that hold a name in which poses left out are asked for it
 AGREED = 1e-6  # of a logarithm, by which names may be more probable than they are held back to
 VIEWS = 2  # sets by which the errors are chosen beside which all are judged
@@ -53,9 +54,11 @@ class Sets:
         """What explains as much in the place of one of the chosen, the likeliest first.
 
         Sets hold it or the name; both or neither they hold less often than by chance, and neither
-        is less likely than it is.
+        is less likely than it is. What nearly every set holds has nothing in its place.
         """
         weight, holds = self._weight, self._holds
+        if self.with_any((e,)) > HELD_BY_ALL:
+            return ()
         found: list[int] = []
         while True:
             held = holds[:, [e, *found]].any(axis=1)

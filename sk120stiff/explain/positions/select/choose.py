@@ -214,12 +214,17 @@ def _beside_frames(
 
     Where one frame is off, so are the others, each by too little to ask for six parameters of its
     own; a single one elsewhere may then stand for several of them, as a tracker that misreads the
-    scale does for an arm that is longer in every link.
+    scale does for an arm that is longer in every link. A joint's zero is a number of its frame.
     """
     frames = frames_of(linear)
     if not set(frames) & set(chosen):
         return chosen
-    for e in [e for e in chosen if usual(linear.candidates[e]) <= 0.0]:
+    elsewhere = (
+        e
+        for e in chosen
+        if usual(linear.candidates[e]) <= 0.0 and not isinstance(linear.candidates[e], JointOffset)
+    )
+    for e in [*elsewhere]:
         noise = linear.noise(chosen)
         rest = linear.less(chosen, e)
         wide = tuple(dict.fromkeys((*rest, *frames)))

@@ -1,9 +1,10 @@
 """Which small errors of joint frames can be told apart: a least set, and why the rest is not.
 
-Columns of the derivative are taken one after the other. One that the earlier ones make up, or that
-beside them would be known no better than what is plausible anyway, is frozen at its value; what it
-is counted in is said. (Rank-revealing by Gram and Schmidt with the order as preference; cf.
-Khalil & Dombre 2002, ch. 11, on minimal parameters of calibration.)
+Columns of the derivative are taken one after the other, those first that the earlier ones hardly
+share. One that the others make up, or that beside them would be known no better than what is
+plausible anyway, is frozen at its value; what it is counted in is said. (Rank-revealing by Gram and
+Schmidt with the order as preference; cf. Khalil & Dombre 2002, ch. 11, on minimal parameters of
+calibration.)
 """
 
 from __future__ import annotations
@@ -20,6 +21,10 @@ from sk120stiff.effects.thermal_growth import ThermalGrowth
 from sk120stiff.model import Model
 
 KNOWN = 3.0  # standard errors that what is plausible must hold
+#: Share of a column beside the earlier ones, from which on it is taken at once. A shift along the
+#: axis of the last joint is one of the marker, but for the mrad by which that axis was found to
+#: tilt; it must not stand for a shift across the axis, which would come after it.
+AT_ONCE = 0.1
 EXACT = 2e-3  # share of a column left beside the earlier ones that rounding brings: pi as 3.14
 NAMED = 0.25  # share of a column that a parameter must carry to be named for it
 MOST = 4  # names for one frozen parameter
@@ -66,30 +71,32 @@ def least_set(model: Model, jacobian: Array, span: Array) -> tuple[Model, tuple[
     norms = np.linalg.norm(jacobian, axis=0)
     basis = np.zeros((jacobian.shape[0], len(order)))
     kept: list[int] = []
-    frozen: list[tuple[int, bool]] = []
-    for k in order:
-        column = jacobian[:, k].copy()
-        for _ in range(2):  # twice is enough (Kahan and Parlett)
-            Q = basis[:, : len(kept)]
-            column -= Q @ (Q.T @ column)
-        left = float(np.linalg.norm(column))
-        exact = left <= EXACT * norms[k]
-        if movable[k] and (exact or left * span[k] < KNOWN):
-            frozen.append((k, exact))
-            continue
-        if left > 0.0:
-            basis[:, len(kept)] = column / left
-            kept.append(k)
+    frozen: dict[int, bool] = {}
+    for least in (AT_ONCE, 0.0):
+        for k in [k for k in order if k not in kept and k not in frozen]:
+            column = jacobian[:, k].copy()
+            for _ in range(2):  # twice is enough (Kahan and Parlett)
+                Q = basis[:, : len(kept)]
+                column -= Q @ (Q.T @ column)
+            left = float(np.linalg.norm(column))
+            if movable[k] and left < least * norms[k]:
+                continue
+            exact = left <= EXACT * norms[k]
+            if movable[k] and (exact or left * span[k] < KNOWN):
+                frozen[k] = exact
+            elif left > 0.0:
+                basis[:, len(kept)] = column / left
+                kept.append(k)
     reasons = tuple(
         Frozen(
             model.parameters[free[k]].name,
             _inside(model, jacobian, kept, k) if norms[k] * span[k] >= KNOWN else (),
             exact,
         )
-        for k, exact in frozen
+        for k, exact in sorted(frozen.items())
     )
     parameters = list(model.parameters)
-    for k, _ in frozen:
+    for k in frozen:
         parameters[free[k]] = replace(parameters[free[k]], free=False)
     return replace(model, parameters=tuple(parameters)), reasons
 
