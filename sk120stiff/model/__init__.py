@@ -36,7 +36,11 @@ from sk120stiff.model.parameter import (
 )
 from sk120stiff.model.pose_reading import instrument_frames
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
-from sk120stiff.model.typical import typical_model, typical_parameters
+from sk120stiff.model.typical import (
+    implausible_geometry,
+    typical_model,
+    typical_parameters,
+)
 from sk120stiff.model.uncertainty import Remainder, Uncertainty
 
 __all__ = [
@@ -56,6 +60,7 @@ __all__ = [
     "base_model",
     "counted_from",
     "held_loads",
+    "implausible_geometry",
     "instrument_frames",
     "joint_shares",
     "joint_spring_model",

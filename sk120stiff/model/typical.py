@@ -1,4 +1,4 @@
-"""Joint springs that are usual for an arm of a size: a start where nothing was measured."""
+"""What is usual of an arm: springs to start with, and values that none has."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import effect
+from sk120stiff.effects import Geometric, Imposed, effect
 from sk120stiff.model.model import Model, joint_spring_model
 from sk120stiff.model.parameter import Parameter
 from sk120stiff.robot import Robot
@@ -58,6 +58,20 @@ def typical_stiffness(robot: Robot) -> Array:
 def typical_parameters(model: Model) -> tuple[Parameter, ...]:
     """Parameters of a model that nobody measured."""
     return tuple(p for p in model.parameters if p.origin.startswith(TYPICAL))
+
+
+def implausible_geometry(model: Model) -> tuple[Parameter, ...]:
+    """Parameters by which the arm is another than any that is built to its drawing.
+
+    Where a marker sits, and where an instrument stands, is nobody's drawing.
+    """
+    return tuple(
+        p
+        for p in model.parameters
+        if isinstance(p.effect, Geometric | Imposed)
+        and not (isinstance(p.effect, Geometric) and p.effect.of_marker)
+        and abs(p.internal) > p.spec.plausible
+    )
 
 
 def _levers(robot: Robot) -> Array:

@@ -21,7 +21,7 @@ from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.stated_sizes import heavier_than_the_arm
-from sk120stiff.model import Model
+from sk120stiff.model import Model, Parameter
 
 SURE = 3.0  # standard errors by which a mass is less than nothing
 MUCH_LESS, SURELY = 0.5, 0.999  # of the stated noise, and the probability that it leaves more
@@ -205,10 +205,16 @@ def _few(found: Calibration) -> list[str]:
     ]
 
 
+def implausible(found: Calibration) -> list[Parameter]:
+    """Parameters that came out larger than any arm has them."""
+    reach, hidden = found.problem.reach, unseen(found)
+    shown = (p for p in found.model.parameters if p.name not in hidden)
+    return [p for p in shown if abs(p.internal) > reach(p)]
+
+
 def _implausible(found: Calibration) -> list[str]:
     """That values came out larger than any arm has them."""
-    reach, hidden = found.problem.reach, unseen(found)
-    far = [p for p in found.model.parameters if p.name not in hidden and abs(p.internal) > reach(p)]
+    far = implausible(found)
     if not far:
         return []
     told = [f"{p.name} = {p.value:.3g} {p.spec.unit}" for p in far[:SHOWN]]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import sk120stiff as sk
-from sk120stiff.model import joint_spring_model, write_model
+from sk120stiff.effects import effect
+from sk120stiff.model import Parameter, base_model, joint_spring_model, write_model
 from sk120stiff.robot import load_robot
 from tests.corpus.robots import example
 from tests.positions.test_payload_place import hung, robot_of
@@ -231,6 +232,19 @@ def test_a_robot_without_springs_gets_typical_ones_and_that_is_said(run, two_lin
     assert "typical of an arm of this size, not measured" in said
     assert "Identify them" in said and "--model" in said
     assert f"Warning: {said}" in outcome.stderr
+
+
+def test_a_value_that_no_arm_has_is_told(run, tmp_path: Path) -> None:
+    """A fit went astray, and every command would go on with it."""
+    model = base_model(load_robot("motoman_sk120"))
+    kind = effect(model.robot, "joint_offset", "joint_2_l")
+    for size, told in ((0.02, False), (0.08, True)):
+        file = tmp_path / f"{size}.yaml"
+        write_model(model + [Parameter(kind, kind.parameters[0], size)], file)
+        outcome = run("stiffness", str(file), "--json")
+        said = [text for text in outcome.document["warnings"] if "plausible" in text]
+        assert bool(said) == told
+    assert said[0].startswith("More than is plausible: joint_offset:joint_2_l.offset = 0.08 rad.")
 
 
 def test_a_load_that_nothing_can_hold(run, tmp_path: Path) -> None:

@@ -11,6 +11,8 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.effects import effect
 from sk120stiff.explain.positions.answer.explained import Explained
+from sk120stiff.explain.positions.answer.next_step import next_step_of_positions
+from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from tests.effects.arms import arm
 from tests.positions.arm import TURN, Array, errors, poses, tracked, write
 
@@ -59,3 +61,11 @@ def test_a_link_grows_by_its_own_length() -> None:
         (growth,) = effect(robot, "thermal_growth", link, thermal=True).parameters
         assert growth.typical == pytest.approx(1e-5 * joint.length)
         assert growth.plausible == pytest.approx(10.0 * growth.typical)
+
+
+def test_values_that_no_arm_has_come_before_all_advice(tmp_path: Path, monkeypatch) -> None:
+    found = explained(tmp_path, ARM.stands(A)[0])
+    assert "make sure why" not in next_step_of_positions(found)
+    monkeypatch.setattr(PoseProblem, "reach", lambda self, parameter: 1e-9)
+    said = next_step_of_positions(found)
+    assert said.startswith("First make sure why ") and "Use model.yaml" in said.partition(": ")[2]

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sk120stiff.errors import micro
+from sk120stiff.errors import listed, micro
 from sk120stiff.explain.findings import likely
 from sk120stiff.explain.judge.borne_out import BorneOut, name_of
 from sk120stiff.explain.positions.answer.balancer import tell_apart
 from sk120stiff.explain.positions.answer.explained import SURE
 from sk120stiff.explain.positions.judge.fallen import EVEN
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
+from sk120stiff.identify.positions.words import implausible
 
 if TYPE_CHECKING:
     from sk120stiff.explain.positions.answer.explained import Explained, Named
@@ -93,6 +94,12 @@ def next_step_of_positions(answer: Explained) -> str:
             use += ", much more than these readings foretell: trust it no farther than them"
     held = _contradicted(answer)
     said = [f"{use}." if held is None else held.advice(unit)]
+    if far := implausible(answer.final):
+        names = listed([parameter.name for parameter in far], most=3)
+        beyond = f"First make sure why {names} came out larger than any arm has it"
+        said.insert(
+            0, f"{beyond}: elsewhere than near these poses the model may be off by as much."
+        )
     said = [MOVED, *said] if answer.moved else said
     named = {item.effect.id for item in answer.findings}
     most = next((share for share in answer.budget if share.name in named), None)
