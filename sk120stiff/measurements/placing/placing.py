@@ -27,6 +27,7 @@ from sk120stiff.measurements.placing.slips import (
     to_the_floor,
     with_sums,
 )
+from sk120stiff.measurements.placing.under_load import refuse_far_under_load
 from sk120stiff.measurements.placing.untold import with_told_place
 from sk120stiff.measurements.placing.upside_down import OtherConvention, standing
 from sk120stiff.measurements.placing.zeros import small_zeros
@@ -85,21 +86,22 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
     x = np.full((readings.n_readings, 3), np.nan) if x is None else x
     whole = np.flatnonzero(np.isfinite(x).all(axis=1) & readings.use)
     lost = whole[(x[whole] == 0.0).all(axis=1)]  # a tracker that saw nothing
-    whole = _lightest(
-        readings, said, whole if len(lost) == len(whole) else np.setdiff1d(whole, lost)
-    )
+    every = whole if len(lost) == len(whole) else np.setdiff1d(whole, lost)
+    whole = _lightest(readings, said, every)
     if len(whole) < FEWEST:
         return _by_distances(robot, readings)
     stations, stood = said.stood
     stands_for_all(stations, stood[whole], readings)
     free = said.fit_point
-    names = np.array(said.markers)[whole]
     groups = [] if said.groups is None else [said.groups[k] for k in whole]
     labels = list(dict.fromkeys(groups))
-    one = np.zeros(len(whole), dtype=np.intp)
-    cloud = Cloud(
-        robot, readings.joints[whole], x[whole], said.point[whole], names, one, stood[whole]
-    )
+
+    def of(rows: Index) -> Cloud:
+        names, one = np.array(said.markers)[rows], np.zeros(len(rows), dtype=np.intp)
+        parts = readings.joints[rows], x[rows], said.point[rows], names, one, stood[rows]
+        return Cloud(robot, *parts)
+
+    cloud = of(whole)
     found, kept = cloud.placed(fit_marker=True)
     spread = cloud.spread
     if free and len(labels) > 1 and found.rms > SUSPECT * spread:
@@ -133,6 +135,8 @@ def place(robot: Robot, readings: Measurements) -> Placing | None:
             notes.append(f"T{told}. {remedy}")
         found, kept = stated, at
     found, notes[len(notes) :] = with_told_place(cloud, found, kept)
+    if len(every) > len(whole) and len(found.apart) == 1:
+        refuse_far_under_load(of(every), found, readings, every)
     if said.frame == "base":
         _refuse_other_axes(found, cloud, spread, readings)
     if found.rms < COMPUTED:
