@@ -47,7 +47,7 @@ def doubtful_sizes(robot: Robot, readings: Measurements) -> tuple[str, ...]:
     if 0.0 < heaviest < NOTHING * own:
         told.append(
             f"The heaviest payload is {heaviest:.3g} kg on an arm of {own:.3g} kg: it bends "
-            "nothing. Tonnes taken for kg?"
+            "nothing. Are they tonnes, or kg under a header in g?"
         )
     told += heavier_than_the_arm(heaviest, own)
     return tuple(told)

@@ -256,7 +256,7 @@ def _hung(found: Calibration, readings: Measurements) -> list[str]:
     if not any(isinstance(effect, Elastic) for effect in found.model.effects):
         return []
     place = [p for p in found.model.parameters if p.effect.name == "force_point"]
-    if place and not said.fit_payload:
+    if place and not said.fit_payload and not {p.name for p in place} & {*unseen(found)}:
         at = zip(said.payload_point, place, strict=True)
         told = ", ".join(
             f"{1e3 * (there + p.internal):.3g} ± {1e3 * (p.internal_std or 0.0):.2g}"

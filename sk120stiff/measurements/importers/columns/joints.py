@@ -102,8 +102,9 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
             raise InputError(
                 f"the joint {joint!r} has no column 'q{k}'{meant(joint, names)}",
                 where=str(sheet.path),
-                remedy="Name the columns as the joints, or q1, q2, ..., or give their names with "
-                f"--joints. {robot}",
+                remedy=f"Joints were found in {listed([c.header for c in numbered.values()])}. Name "
+                "the columns as the joints, or q1, q2, ..., or give their names with --joints. "
+                + robot,
             )
     over = [c.header for k, c in numbered.items() if k >= start + n]
     if over:
