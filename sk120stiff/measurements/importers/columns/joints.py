@@ -99,10 +99,11 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
     names = [unit_of_header(c.header)[0] for c in (*numbered.values(), *sheet.spare)]
     for k, joint in enumerate(actuated, start):
         if k not in numbered:
+            headers = listed([c.header for c in numbered.values()])
             raise InputError(
                 f"the joint {joint!r} has no column 'q{k}'{meant(joint, names)}",
                 where=str(sheet.path),
-                remedy=f"Joints were found in {listed([c.header for c in numbered.values()])}. Name "
+                remedy=f"Joints were found in {headers}. Name "
                 "the columns as the joints, or q1, q2, ..., or give their names with --joints. "
                 + robot,
             )
