@@ -19,6 +19,7 @@ OF_SETS: tuple[Fault, ...] = (
         twins_are_held_back_once=("        if not refuted:\n            return log\n        for c in refuted:\n            log = log - max(too_much(c), 0.0) * holds[:, c]\n", "        for c in refuted:\n            log = log - max(too_much(c), 0.0) * holds[:, c]\n        return log\n"),
         what_comes_and_goes_stands_instead=("as_much & (both * neither < HALF * alone * instead)", "as_much"),
         anything_stands_instead=("likely = as_much & (both", "likely = (both"),
+        rivals_of_what_every_set_holds=("if self.with_any((e,)) > HELD_BY_ALL:", "if False:"),
     ),
     *of(
         "explain/positions/judge/accounts.py", *tests("positions/explain", "shares"),
@@ -32,5 +33,36 @@ OF_SETS: tuple[Fault, ...] = (
         "explain/positions/select/linear.py", *tests("positions/explain", "sets"),
         scores_at_once_without_what_is_chosen=("own + np.linalg.slogdet(block / noise)[1]", "np.linalg.slogdet(block / noise)[1]"),
         signs_that_do_not_bind=("low[P:][self.positive] = 0.0", "low[P:][self.positive] = -np.inf"),
+    ),
+    *of(
+        "explain/positions/select/choose.py", *tests("positions/explain", "beside_frames"),
+        zeros_fall_beside_frames=("usual(linear.candidates[e]) <= 0.0 and not isinstance(linear.candidates[e], JointOffset)", "usual(linear.candidates[e]) <= 0.0"),
+    ),
+    *of(
+        "identify/positions/solve/minimal_parameters.py", *tests("positions/explain", "beside_frames"),
+        a_shift_along_for_one_across=("for least in (AT_ONCE, 0.0):", "for least in (0.0,):"),
+        weakly_seen_is_not_seen=("for least in (AT_ONCE, 0.0):", "for least in (AT_ONCE,):"),
+    ),
+    *of(
+        "effects/thermal_growth.py", *tests("positions/explain", "warmth"),
+        every_link_grows_as_one_of_a_metre=("typical = of_metre * self.length", "typical = of_metre"),
+    ),
+    *of(
+        "effects/thermal_drift.py", *tests("positions/explain", "warmth"),
+        stands_that_never_grow=("kelvin[:, None, None] * np.eye(3)", "0.0 * kelvin[:, None, None] * np.eye(3)"),
+    ),
+    *of(
+        "explain/positions/answer/next_step.py", *tests("positions/explain", "warmth"),
+        advice_to_use_what_no_arm_has=("if far := implausible(answer.final):", "if far := []:"),
+    ),
+    *of(
+        "model/typical.py", *tests("cli/commands", "stiffness"),
+        any_geometry_is_plausible=("and abs(p.internal) > p.spec.plausible", "and False"),
+    ),
+    *of(
+        "measurements/placing/under_load.py", *tests("positions/checks", "under_load"),
+        loads_move_a_tool_anywhere=("if far.mean() < WILD:", "if True:"),
+        one_wild_row_stops_all=("if far.mean() < WILD:", "if not far.any():"),
+        no_row_is_apart=("    refuse_from_a_row_on(cloud, told, least, readings, rows)\n", ""),
     ),
 )  # fmt: skip

@@ -134,3 +134,11 @@ def test_all_that_poses_left_out_refute_are_held_back_however_many_stand_for_one
     assert max(alone) > 0.9 * FALLEN / (1.0 + FALLEN)  # and no more than that
     certain = replace(made, residual=300.0 * made.residual)  # beyond what exp() of the odds holds
     assert np.isfinite([*Posterior(certain, (1,)).sets.weights.values()]).all()
+
+
+def test_what_nearly_every_set_holds_has_nothing_in_its_place() -> None:
+    """What is likely besides is no rival, though the few sets without the name hold it."""
+    beside = {frozenset({0, 1}): 0.925, frozenset({0}): 0.07, frozenset({1}): 0.005}
+    assert Sets(beside, frozenset({0}), 2).in_its_place(0) == ()
+    instead = {frozenset({0}): 0.9, frozenset({1}): 0.1}
+    assert Sets(instead, frozenset({0}), 2).in_its_place(0) == (1,)
