@@ -81,7 +81,7 @@ def test_all_effects_together(name: str, follows: bool) -> None:
     shown = np.abs(exact * typical).max(axis=(0, 1))
     told = {model.parameters[k].effect.name for k in np.flatnonzero(shown > 1e-9)}
     new = {p.effect.name for p in model.parameters if p.effect.only_absolute}
-    assert len(new) == (10 if robot.total_mass else 9) and new <= told
+    assert len(new) == (11 if robot.total_mass else 10) and new <= told
 
 
 def test_models_with_them_are_written_and_read_without_loss() -> None:
