@@ -54,10 +54,12 @@ class Jump:
 
     Attributes:
         row: Index of the pose from which it goes.
+        a: (n,) coordinates on the way that cannot be.
         touching: Pairs of solids that touch there; none where a closed loop cannot be closed.
     """
 
     row: int
+    a: Array
     touching: tuple[Pair, ...]
 
     @property
@@ -182,7 +184,7 @@ def jumps(
         met = _met(robot, scene, start, end)
         if met is not None:
             pairs = scene.contacts(met[None])[0] if robot.closes(met[None])[0] else ()
-            found.append(Jump(k, pairs))
+            found.append(Jump(k, met, pairs))
     return tuple(found)
 
 

@@ -162,8 +162,6 @@ def assemble(
     tool_frame = tool or description.tool_frame or guessed.tool
     document = with_arm_only(document, base_frame, tool_frame, wanted, rest)
     tree = Tree(document.xml)
-    for name, frame in (("base", base_frame), ("tool", tool_frame)):
-        tree.body(frame, where=f"{name} frame of {description.name or document.name}")
     followers = _followers(document, description)
     drivers = _drivers(tree, base_frame, tool_frame, followers)
     if closures and not given:

@@ -40,7 +40,7 @@ def lacking(m: Measurements, part: str, row: int, by: int) -> Measurements:
     )
 
 
-@pytest.mark.parametrize(("arm", "by"), zip(ARMS, [1, 2], strict=True))
+@pytest.mark.parametrize(("arm", "by"), list(zip(ARMS, [1, 2], strict=True)))
 @pytest.mark.parametrize("part", PARTS)
 def test_the_line_is_told(arm: str, part: str, by: int) -> None:
     sound = ARMS[arm]()

@@ -18,7 +18,7 @@ def refused(arm: Arm, data: Measurements) -> Refusal:
     return found.value
 
 
-@pytest.mark.parametrize(("arm", "stated"), zip(ARMS, [True, False], strict=True))
+@pytest.mark.parametrize(("arm", "stated"), list(zip(ARMS, [True, False], strict=True)))
 @pytest.mark.parametrize("garbage", ["shuffled", "random"])
 def test_garbage_is_refused(arm: str, garbage: str, stated: bool) -> None:
     known = ARMS[arm]()

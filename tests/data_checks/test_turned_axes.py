@@ -95,7 +95,7 @@ def test_two_zeros_that_are_quarters_off(one: tuple[int, int], other: tuple[int,
         assert f"the zero of {known.robot.actuated[k]} seems to be {degrees} deg off" in found.said
 
 
-@pytest.mark.parametrize(("arm", "axis"), zip(ARMS, [0, 1], strict=True))
+@pytest.mark.parametrize(("arm", "axis"), list(zip(ARMS, [0, 1], strict=True)))
 @pytest.mark.parametrize("what", ["displacement", "force"])
 def test_axes_whose_z_points_down(arm: str, axis: int, what: str) -> None:
     known = ARMS[arm]()

@@ -18,7 +18,7 @@ def with_wild(arm: Arm, rows: list[int], size: float, seed: int = 3) -> Measurem
     return replace(arm.readings, displacement=d)
 
 
-@pytest.mark.parametrize(("arm", "size"), zip(ARMS, [0.02, 11.0], strict=True))
+@pytest.mark.parametrize(("arm", "size"), list(zip(ARMS, [0.02, 11.0], strict=True)))
 @pytest.mark.parametrize("rows", [[7], [3, 20], [1, 2, 30, 41]])
 def test_wild_rows_are_found_and_no_others(arm: str, size: float, rows: list[int]) -> None:
     known = ARMS[arm]()

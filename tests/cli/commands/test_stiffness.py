@@ -206,8 +206,8 @@ def test_the_other_arm_and_the_fingers_are_told(run) -> None:
         (("--wrench", "1,2,3 N*m"), "--wrench"),
         (("--wrench", "1,2,3,4,5,6 N"), "moments"),
         (("--at", "nowhere"), "--at: there is no frame 'nowhere'. Frames are: base_link, "),
-        (("--tool", "nowhere"), "tool frame of motoman_sk120: there is no frame 'nowhere'"),
-        (("--base", "tol0"), "base frame of motoman_sk120: there is no frame 'tol0' (did you"),
+        (("--tool", "nowhere"), "there is no frame 'nowhere'. Frames are: base_link, "),
+        (("--base", "tol0"), "there is no frame 'tol0' (did you mean 'tool0'?)"),
         (("--model", "missing.yaml"), "missing.yaml"),
     ],
 )
