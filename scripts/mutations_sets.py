@@ -36,7 +36,11 @@ OF_SETS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/positions/select/choose.py", *tests("positions/explain", "beside_frames"),
-        zeros_fall_beside_frames=("usual(linear.candidates[e]) <= 0.0 and not isinstance(linear.candidates[e], JointOffset)", "usual(linear.candidates[e]) <= 0.0"),
+        zeros_fall_beside_frames=("return abs(value) > max(typical)", "return False"),
+    ),
+    *of(
+        "explain/positions/select/choose.py", *tests("positions/uncertainty", "nuisances"),
+        small_turns_of_frames_are_zeros=("return abs(value) > max(typical)", "return True"),
     ),
     *of(
         "identify/positions/solve/minimal_parameters.py", *tests("positions/explain", "beside_frames"),

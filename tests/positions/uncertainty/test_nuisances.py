@@ -99,8 +99,7 @@ def test_small_errors_of_all_frames_get_no_other_name(tmp_path: Path) -> None:
         found = choose(replace(linear, residual=residual))
         named += [linear.candidates[e].name for e in found.order]
     assert named.count("joint_frame") > 12
-    # A turn of a frame about the joint's own axis is that joint's zero.
-    assert set(named) <= {"joint_frame", "joint_offset"}, named
+    assert set(named) == {"joint_frame"}, named
 
 
 def test_waves_that_few_poses_cannot_show_are_in_the_errors_of_springs(

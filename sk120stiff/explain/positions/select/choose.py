@@ -214,17 +214,15 @@ def _beside_frames(
 
     Where one frame is off, so are the others, each by too little to ask for six parameters of its
     own; a single one elsewhere may then stand for several of them, as a tracker that misreads the
-    scale does for an arm that is longer in every link. A joint's zero is a number of its frame.
+    scale does for an arm that is longer in every link. A joint's zero all frames together explain
+    whatever it is: one that is larger than frames are off as a rule is a cause of its own.
     """
     frames = frames_of(linear)
     if not set(frames) & set(chosen):
         return chosen
-    elsewhere = (
-        e
-        for e in chosen
-        if usual(linear.candidates[e]) <= 0.0 and not isinstance(linear.candidates[e], JointOffset)
-    )
-    for e in [*elsewhere]:
+    for e in [e for e in chosen if usual(linear.candidates[e]) <= 0.0]:
+        if _larger_than_of_a_frame(linear, chosen, e):
+            continue
         noise = linear.noise(chosen)
         rest = linear.less(chosen, e)
         wide = tuple(dict.fromkeys((*rest, *frames)))
@@ -241,6 +239,18 @@ def _beside_frames(
                 break
             chosen, now = (*chosen, best), score
     return chosen
+
+
+def _larger_than_of_a_frame(linear: Linear, chosen: tuple[int, ...], e: int) -> bool:
+    """Is a cause the zero of a joint, and off by more than what is typical of a frame?"""
+    zero = linear.candidates[e]
+    if not isinstance(zero, JointOffset):
+        return False
+    (spec,) = zero.parameters
+    frames = (linear.candidates[f] for f in frames_of(linear))
+    typical = [s.typical for frame in frames for s in frame.parameters if s.unit == spec.unit]
+    value = linear.values(chosen, linear.noise(chosen))[f"{zero.id}.{spec.name}"]
+    return abs(value) > max(typical)
 
 
 def frames_of(linear: Linear) -> list[int]:
