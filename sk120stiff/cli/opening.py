@@ -11,7 +11,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import note
-from sk120stiff.errors import InputError, listed, warn
+from sk120stiff.errors import InputError, warn
 from sk120stiff.files import will_write
 from sk120stiff.robot import Robot, find_robot, is_dh_table, load_robot
 from sk120stiff.units import parse_pose, parse_wrench
@@ -136,7 +136,7 @@ def model_file(named: str | Path) -> Path | None:
 
 def tell_doubts(model: Model) -> Model:
     """The model, after a warning where nobody measured its values, or no arm has such ones."""
-    from sk120stiff.model import implausible_geometry, typical_parameters
+    from sk120stiff.model import implausible_geometry, told_implausible, typical_parameters
 
     if assumed := typical_parameters(model):
         places = ", ".join(dict.fromkeys(p.effect.where for p in assumed))
@@ -145,12 +145,7 @@ def tell_doubts(model: Model) -> Model:
             "are orders of magnitude. Identify them (sk120stiff identify), or give --model."
         )
     if beyond := implausible_geometry(model):
-        values = listed([f"{p.name} = {p.value:.3g} {p.spec.unit}" for p in beyond], most=3)
-        warn(
-            f"More than is plausible: {values}. Where such a value was fitted, another cause hides "
-            "behind it or the fit found no better way: results may be off by as much. Make sure "
-            "before you use this model."
-        )
+        warn(told_implausible(beyond))
     return model
 
 

@@ -38,6 +38,7 @@ from sk120stiff.model.pose_reading import instrument_frames
 from sk120stiff.model.predicted import Predicted, predict, predict_with_uncertainty
 from sk120stiff.model.typical import (
     implausible_geometry,
+    told_implausible,
     typical_model,
     typical_parameters,
 )
@@ -79,6 +80,7 @@ __all__ = [
     "robot_of_model",
     "seen_from",
     "shares",
+    "told_implausible",
     "typical_model",
     "typical_parameters",
     "warn_of_far_bend",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import Geometric, Imposed, effect
+from sk120stiff.errors import listed
 from sk120stiff.model.model import Model, joint_spring_model
 from sk120stiff.model.parameter import Parameter
 from sk120stiff.robot import Robot
@@ -17,6 +19,7 @@ TYPICAL = "typical of an arm of this size, not measured"
 
 WIND_UP = 3e-3  # rad by which a geared joint turns under its largest torque
 SHIFT = 1e-4  # m by which a slide shifts under its largest force
+TOLD = 4  # values that no arm has, one by one
 LEAST_LEVER = 0.1  # share of the arm's length that the shortest lever counts for
 BELIEVABLE = 10.0  # factor from what the size says, beyond which a stated effort is a placeholder
 
@@ -71,6 +74,15 @@ def implausible_geometry(model: Model) -> tuple[Parameter, ...]:
         if isinstance(p.effect, Geometric | Imposed)
         and not (isinstance(p.effect, Geometric) and p.effect.of_marker)
         and abs(p.internal) > p.spec.plausible
+    )
+
+
+def told_implausible(parameters: Sequence[Parameter]) -> str:
+    """What to think of values that no arm has, and to do first."""
+    values = listed([f"{p.name} = {p.value:.3g} {p.spec.unit}" for p in parameters], most=TOLD)
+    return (
+        f"More than is plausible: {values}. The zero of a joint is elsewhere, another cause hides "
+        "behind it, or the fit found no better way: make sure before you use this model."
     )
 
 

@@ -21,7 +21,7 @@ from sk120stiff.identify.uncertainty.known_model import known_estimates
 from sk120stiff.identify.uncertainty.parts import mostly_parts
 from sk120stiff.measurements import Measurements
 from sk120stiff.measurements.stated_sizes import heavier_than_the_arm
-from sk120stiff.model import Model, Parameter
+from sk120stiff.model import Model, Parameter, told_implausible
 
 SURE = 3.0  # standard errors by which a mass is less than nothing
 MUCH_LESS, SURELY = 0.5, 0.999  # of the stated noise, and the probability that it leaves more
@@ -215,13 +215,7 @@ def implausible(found: Calibration) -> list[Parameter]:
 def _implausible(found: Calibration) -> list[str]:
     """That values came out larger than any arm has them."""
     far = implausible(found)
-    if not far:
-        return []
-    told = [f"{p.name} = {p.value:.3g} {p.spec.unit}" for p in far[:SHOWN]]
-    return [
-        f"More than is plausible: {listed(told)}. The zero of a joint is elsewhere, another cause "
-        "hides behind it, or the fit found no better way: make sure before you use this model."
-    ]
+    return [told_implausible(far)] if far else []
 
 
 def _rigid(found: Calibration) -> list[str]:

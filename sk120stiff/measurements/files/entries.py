@@ -14,8 +14,6 @@ from sk120stiff.measurements.noise_statement import Instrument
 
 Column = tuple[str, Iterable[str]]
 
-_ROUNDINGS = 2.0  # of a float, by which fifteen digits may read back otherwise
-
 
 def column(name: str, values: ArrayLike, unit: str, kind: str) -> Column:
     """Header with its unit, and cells; what was not read is a blank one."""
@@ -40,15 +38,20 @@ def digits(value: float) -> str:
 
 
 def in_unit(values: ArrayLike, unit: str, kind: str) -> Array:
-    """SI values in a unit, without its rounding: 0.015 mm, not 0.015000000000000001."""
-    si = np.array(values, dtype=np.float64)
-    out, known = si.copy(), np.isfinite(si)
-    out[known] = whole = units.from_si(si[known], unit, kind)
-    if not np.array_equal(whole, si[known]):
-        short = np.array([float(f"{number:.15g}") for number in np.ravel(whole)])
-        short = short.reshape(np.shape(whole))
-        off = np.abs(units.to_si(short, unit, kind) - si[known])
-        out[known] = np.where(off <= _ROUNDINGS * np.spacing(np.abs(si[known])), short, whole)
+    """SI values (N,) in a unit, without its rounding: 0.015 mm, not 0.015000000000000001.
+
+    What is not finite was not read, and stays so. Fifteen digits do where they read back within one
+    rounding, or no further off than all digits.
+    """
+    out = np.array(values, dtype=np.float64)
+    known = np.isfinite(out)
+    si = out[known]
+    whole = np.asarray(units.from_si(si, unit, kind), dtype=float)
+    if not np.array_equal(whole, si):
+        few = np.array([float(f"{number:.15g}") for number in whole])
+        off, least = (np.abs(units.to_si(each, unit, kind) - si) for each in (few, whole))
+        whole = np.where(off <= np.maximum(np.spacing(np.abs(si)), least), few, whole)
+    out[known] = whole
     return out
 
 

@@ -17,7 +17,9 @@ from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import of_columns
 from sk120stiff.measurements.files.entries import (
     Column,
+    bare,
     column,
+    columns,
     digits,
     instrument_entry,
     length_entry,
@@ -52,8 +54,8 @@ def write_measurements(
     bit for bit; with other units within one rounding of the conversion. Readings that came as
     positions are written as displacements, with what they subtracted in the columns
     ``zero_group``, ``zero_count``, ``zero_order`` and ``zero_time[s]`` where that is not plain.
-    Positions as such (`Measurements.absolute`) are written as they were read, to 15 digits; a plan
-    of them has blank cells where readings will stand.
+    Positions as such (`Measurements.absolute`) are written as they were read; a plan of them
+    has blank cells where readings will stand.
 
     Args:
         measurements: What to write; masked rows too, with ``use`` 0.
@@ -84,16 +86,16 @@ def write_measurements(
     measured = POSITIONS if as_positions else DISPLACEMENTS
     said = measurements.absolute if measurements.displacement is None else None
     if said is None:
-        columns = columns_of(measurements, angle, length, measured)
+        cells = columns_of(measurements, angle, length, measured)
         keys = _settings(measurements, target.parent, length)
     else:
-        columns = columns_of_positions(measurements, said, angle, length)
+        cells = columns_of_positions(measurements, said, angle, length)
         keys = {
             **_named(measurements, target.parent),
             **settings_of_positions(measurements, said, length),
             **_beside(measurements),
         }
-    text = files.csv_text(columns)
+    text = files.csv_text(cells)
     settings = yaml.safe_dump(keys, sort_keys=False, allow_unicode=True)
     with files.together():
         files.write_atomically(target.with_suffix(".yaml"), settings)
@@ -129,11 +131,9 @@ def columns_of(
     for k, name in enumerate(m.joint_names):
         kind = m.joint_kinds[k]
         yield column(name, m.joints[:, k], angle if kind == "angle" else length, kind)
-    for k, name in enumerate(FORCES):
-        yield column(name, m.wrench[:, k], "N", "force")
+    yield from columns(FORCES, m.wrench[:, :3], "N", "force")
     if np.any(m.wrench[:, 3:]):
-        for k, name in enumerate(MOMENTS):
-            yield column(name, m.wrench[:, 3 + k], "N*m", "moment")
+        yield from columns(MOMENTS, m.wrench[:, 3:], "N*m", "moment")
     sigma = m.sigma
     if sigma is not None and m.displacement is not None and measured == DISPLACEMENTS:
         sigma = of_displacement(sigma, m.zero_count)
@@ -146,13 +146,11 @@ def columns_of(
                 remedy="Write them to two files.",
             )
         yield column("d", of_columns(m.directions, moved), length, "length")
-        for k, name in enumerate(DIRECTIONS):
-            yield name, map(digits, m.directions[:, k])
+        yield from bare(DIRECTIONS, m.directions)
         moved = None
     for names, values in ((measured, moved), (UNCERTAINTIES, sigma)):
         if values is not None:
-            for k, name in enumerate(names):
-                yield column(name, values[:, k], length, "length")
+            yield from columns(names, values, length, "length")
     if m.order is not None:
         yield "order", map(digits, m.order)
     if m.time is not None:
