@@ -49,12 +49,13 @@ def refuse_from_a_row_on(
         if shifted is None or shifted[0] >= least:
             continue
         rms, row = shifted
-        last = len(line) - 1
+        first = max(row, -by)
+        position, joints = line[first], line[min(first + by, len(line) - 1)]
+        apart = max(abs(int(joints - position)), 1)  # other rows may lie between
         raise InputError(
-            f"{told}. From line {line[row]} on positions and joints look {abs(by)} row"
-            f"{'s' * (abs(by) > 1)} apart: with the position of line {line[max(row, -by)]} at the "
-            f"joints of line {line[min(max(row, -by) + by, last)]}, and so on, {1e3 * rms:.3g} mm "
-            "are left",
+            f"{told}. From line {line[row]} on positions and joints look {apart} row"
+            f"{'s' * (apart > 1)} apart: with the position of line {position} at the joints of "
+            f"line {joints}, and so on, {1e3 * rms:.3g} mm are left",
             where=readings.place,
             remedy="Put the rows right: one of them lacks its partner.",
         )

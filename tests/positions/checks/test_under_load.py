@@ -10,6 +10,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers import import_readings
 from sk120stiff.measurements.placing.placing import Placing, place
 from tests.positions.arm import NAMES, Array, errors, poses, tracked, write
 
@@ -37,6 +38,26 @@ def test_rows_one_apart_from_one_on_are_told(tmp_path: Path) -> None:
     x = stands()
     x[21:-1] = x[22:]
     with pytest.raises(InputError, match=r"From line 2\d on .* look 1 row apart"):
+        placed(tmp_path, x)
+
+
+def test_import_says_so_too(tmp_path: Path) -> None:
+    """Not by the rows without load alone, which are right."""
+    x = stands()
+    path = write(tmp_path, A, x, SETTINGS, more=",payload[kg]", cells=[f"{m:g}" for m in HUNG])
+    robot = sk.load_robot(path.with_name("six.urdf"), base="base", tool="tool")
+    assert import_readings(path, robot).fitted is not None
+    x[21:-1] = x[22:]
+    write(tmp_path, A, x, SETTINGS, more=",payload[kg]", cells=[f"{m:g}" for m in HUNG])
+    with pytest.raises(InputError, match=r"From line 2\d on .* look 1 row apart"):
+        import_readings(path, robot)
+
+
+def test_rows_are_counted_as_they_lie_in_the_file(tmp_path: Path) -> None:
+    """Two rows apart, both of them of the next pose."""
+    x = stands()
+    x[20:-2] = x[22:]
+    with pytest.raises(InputError, match=r"look 2 rows apart: with the position of line 2\d"):
         placed(tmp_path, x)
 
 

@@ -19,6 +19,7 @@ from sk120stiff.measurements.placing.cloud import FEWEST, Cloud
 from sk120stiff.measurements.placing.placing import FITS, place
 from sk120stiff.measurements.placing.registration import Registration, register
 from sk120stiff.measurements.placing.slips import Convention
+from sk120stiff.measurements.placing.under_load import refuse_far_under_load
 from sk120stiff.measurements.placing.untold import with_told_place
 from sk120stiff.measurements.placing.upside_down import OtherConvention
 from sk120stiff.robot import Robot
@@ -46,13 +47,14 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
 
     Raises:
         Refusal: They are not this robot's.
+        InputError: Many of those under load lie where none can have brought them.
     """
     nothing = Placed(None, np.zeros(0, int), np.zeros(len(draft.pose), bool), None, ())
     if mode == "displacements":
         return nothing
     rows = _unloaded(draft, mode)
     point, known = points_of(draft, told)
-    rough = Measurements(
+    every = Measurements(
         pose=tuple(f"{k}" for k in range(len(draft.pose))),
         joint_names=robot.actuated,
         joint_kinds=tuple(robot.kinds),
@@ -66,9 +68,9 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             "unknown", point, not known, draft.marker_of, np.zeros(len(draft.pose)),
             stations=draft.stations, series=draft.series,
         ),
-    ).select(rows)  # fmt: skip
+    )  # fmt: skip
     try:
-        placing = place(robot, rough)
+        placing = place(robot, every.select(rows))
     except InputError as error:
         if isinstance(error, OtherConvention):
             raise _by_other_columns(error, draft, robot) from error
@@ -105,6 +107,9 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
         return dataclasses.replace(found, covariances=found.covariances * again)
 
     fitted = fit(draft.measured)
+    if mode == "load pairs" and fitted is not None and len(fitted.apart) == 1:
+        used = np.flatnonzero(draft.use & np.isfinite(draft.measured).all(axis=1))
+        refuse_far_under_load(_cloud(draft, robot, point, used), fitted, every, used)
     other = None if draft.reversed is None else fit(draft.reversed)
     wild = np.zeros(len(draft.pose), bool)
     wild[rows[placing.wild]] = True
@@ -121,6 +126,13 @@ def placed(draft: Draft, mode: Mode, robot: Robot, told: Told) -> Placed:
             "wrong one a calibration makes the arm worse: ask where the file comes from."
         )
     return Placed(fitted, kept, wild, other.rms if other else None, tuple(doubts))
+
+
+def _cloud(draft: Draft, robot: Robot, point: Array, rows: Index) -> Cloud:
+    """Some rows of one marker, or of markers whose places are known (N, 3)."""
+    parts = draft.joints.values[rows], draft.measured[rows], point[rows]
+    one = np.zeros(len(rows), dtype=np.intp)
+    return Cloud(robot, *parts, np.array(draft.mounts)[rows], one, stood_of(draft)[rows])
 
 
 def _unloaded(draft: Draft, mode: Mode) -> Index:
