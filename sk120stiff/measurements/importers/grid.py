@@ -18,6 +18,9 @@ _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[.,']\d{3})*(?:(?<=\.\d{3}),|(?<=[,']\d{3})\.)\d+")
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
 _COMMENT = ("//", "#", "%")
+_BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
+_GB_TRAIL = 0xA1  # least byte of a sign of GB 2312
+_GB_LEVEL_1 = range(0xB0, 0xD8)  # first bytes of its common signs
 _LOOKED_AT = 400  # lines that tell the separator
 
 
@@ -83,7 +86,8 @@ def text_grid(path: Path, data: bytes) -> Grid:
 
 
 def decoded(path: Path, data: bytes) -> tuple[str, str]:
-    """Text and the name of its encoding: a byte-order mark, else UTF-8, UTF-16, Windows-1252.
+    """Text and the name of its encoding: a byte-order mark, else UTF-8, UTF-16, GB 18030 where all
+    that is not ASCII are pairs of bytes of common Chinese signs, Windows-1252.
 
     Raises:
         InputError: The bytes are no text.
@@ -103,8 +107,19 @@ def decoded(path: Path, data: bytes) -> tuple[str, str]:
     try:
         data.decode("utf-8")
     except UnicodeDecodeError:
+        if _is_chinese(data):
+            return _decode(path, data, "gb18030"), "GB 18030"
         return _decode(path, data, "cp1252"), "Windows-1252"
     return _decode(path, data, "utf-8"), "UTF-8"
+
+
+def _is_chinese(data: bytes) -> bool:
+    """Do the bytes beyond ASCII come in pairs, most of them of the first level of GB 2312?"""
+    runs = _BEYOND_ASCII.findall(data)
+    if any(len(run) % 2 or min(run) < _GB_TRAIL for run in runs):
+        return False
+    leads = [lead for run in runs for lead in run[::2]]
+    return 2 * sum(lead in _GB_LEVEL_1 for lead in leads) > len(leads)
 
 
 def _decode(path: Path, data: bytes, encoding: str) -> str:

@@ -30,6 +30,7 @@ from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, 
 from sk120stiff.measurements.importers.formats.catalogue import FORMATS
 from sk120stiff.measurements.importers.formats.matlab import is_matlab, matlab_grid
 from sk120stiff.measurements.importers.formats.numpy_archive import is_numpy, numpy_grid
+from sk120stiff.measurements.importers.formats.robot_program import is_program, program_grid
 from sk120stiff.measurements.importers.formats.workbook import (
     fitting_sheets,
     is_workbook,
@@ -46,6 +47,7 @@ from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_dou
 from sk120stiff.measurements.importers.layout.header_rows import in_one_row
 from sk120stiff.measurements.importers.layout.lost_readings import without_lost
 from sk120stiff.measurements.importers.layout.markers_in_rows import with_numbered_markers
+from sk120stiff.measurements.importers.layout.split_headers import with_whole_headers
 from sk120stiff.measurements.importers.loads.hung_masses import (
     doubts_of_names,
     refuse_other_files,
@@ -343,14 +345,16 @@ def _is_elsewhere(
 
 
 def opened(source: Source) -> Source:
-    """The source with its rows, where a workbook, MATLAB or numpy holds them, or in two headers."""
+    """The source with its rows, where a workbook, MATLAB, numpy or a robot's program holds them."""
     if is_workbook(source.data):
         source = dataclasses.replace(source, given=workbook_grid(source))
     elif is_matlab(source.data):
         source = dataclasses.replace(source, given=matlab_grid(source))
     elif is_numpy(source.data):
         source = dataclasses.replace(source, given=numpy_grid(source))
-    return with_numbered_markers(in_one_row(source))
+    elif is_program(source):
+        source = dataclasses.replace(source, given=program_grid(source))
+    return with_numbered_markers(in_one_row(with_whole_headers(source)))
 
 
 def _assembled(

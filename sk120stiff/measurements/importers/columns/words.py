@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from sk120stiff import units
+from sk120stiff.measurements.importers.columns.chinese import in_english
 from sk120stiff.measurements.importers.columns.gauge_units import counted_unit
 from sk120stiff.measurements.importers.columns.load_states import state_of
 from sk120stiff.measurements.importers.columns.masses import MASSES
@@ -40,6 +41,7 @@ _AXES = {
     "t": rf"t ?{_AXIS}",  # a translation, or a torque: `with_torques` tells
     "tcp ": rf"(?:tcp|tool) ?{_AXIS}",
     "orientation ": rf"(?:phi|rot(?:ation)?|r) ?{_AXIS}\d?",
+    "measured orientation ": rf"(?:meas(?:ured)?|act(?:ual)?|ist) (?:rot(?:ation)?|r) ?{_AXIS}",
     "q": r"(?:q|quat(?:ernion)?) ?(?P<a>[wxyz])",
 }
 _PATTERNS = {prefix: re.compile(pattern) for prefix, pattern in _AXES.items()}
@@ -54,7 +56,7 @@ _NAMES = {
     "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
     "date": "date|datum|fecha",
     "pose": "pose|pose id|pose no|pose nr|pose number|pose name|posture|stellung|stellung nr|"
-    "roboterstellung|messstellung",
+    "roboterstellung|messstellung|posa|postura",
     "branch": "branch|load branch|ast|lastast|belastungsast",
     "repeat": "repeat|repetition|rep|wdh|wdh nr|wiederholung|wiederholung nr|run|run no|durchgang|"
     "durchlauf|répétition|ripetizione|repetición",
@@ -77,7 +79,7 @@ _OWN = ("payload", "load", "use", "series")  # mean themselves
 _WORDS = {word: meaning for meaning, words in _NAMES.items() for word in words.split("|")} | {
     word: word for word in _OWN
 }
-_TEMPERATURE = re.compile(r"(?:\w+ )?(?:temp(?:erature|eratur)?)(?: \w+)?")
+_TEMPERATURE = re.compile(r"(?:\w+ )?temp(?:[eé]rature?|eratura)?(?: \w+)?")
 JOINT = re.compile(
     r"(?:q|j|jt|jnt|joint|gelenk|axis|achse|axe|asse|eje|ax|rax|a|th|theta|θ)[ _]?(\d+)"
     r"(?: (?:angle|pos(?:ition)?|value))?"
@@ -122,6 +124,7 @@ UNITS_IN_WORDS = {  # words of units, as headers and rows of units have them
 
 def unit_of_header(header: str) -> tuple[str, str | None]:
     """Name and unit of a header as people write it: ``X (mm)``, ``X [Meters]``, ``x_mm``."""
+    header = in_english(header)
     match = _BRACKETS.fullmatch(header.strip())
     if match:
         unit = UNITS_IN_WORDS.get(match[2].strip().lower(), match[2].strip())
@@ -158,7 +161,7 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     """
     if name in actuated:
         return f"joint {actuated.index(name) + 1}", 1.0
-    plain = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
+    plain = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", in_english(name)).lower()
     cover = _COVERAGE.search(plain)
     plain = _COVERAGE.sub("", plain) if cover else plain
     plain = re.sub("[\N{GREEK SMALL LETTER DELTA}\N{INCREMENT}]", "delta ", plain)
@@ -230,13 +233,18 @@ def kind_of(meaning: str) -> str | None:
 def as_measured(
     meanings: Meanings,
 ) -> tuple[tuple[str, float] | None, ...]:
-    """What is called measured is the position; what stands plainly beside it was nominal."""
-    words = [known[0] if known else "" for known in meanings]
-    if {f"measured {axis}" for axis in "xyz"} <= set(words):
-        other = {axis: f"nominal {axis}" for axis in "xyz"}
-        other |= {f"measured {axis}": axis for axis in "xyz"}
-        return tuple((other.get(k[0], k[0]), k[1]) if k else None for k in meanings)
-    return tuple(meanings)
+    """What is called measured is the position; what stands plainly beside it was nominal.
+
+    So are angles called measured the orientation, and plain ones beside them nothing.
+    """
+    words = {known[0] for known in meanings if known}
+    other: dict[str, str] = {}
+    for of, beside in (("", "nominal {}"), ("orientation ", "")):
+        if {f"measured {of}{axis}" for axis in "xyz"} <= words:
+            other |= {f"{of}{axis}": beside.format(axis) for axis in "xyz"}
+            other |= {f"measured {of}{axis}": f"{of}{axis}" for axis in "xyz"}
+    named = [(other.get(known[0], known[0]), known[1]) if known else None for known in meanings]
+    return tuple(known if known and known[0] else None for known in named)
 
 
 def is_needed(meaning: str) -> bool:

@@ -105,6 +105,8 @@ def layout_of(source: Source, meaning: Meaning = meaning_of) -> Layout | None:
         return _laid_out(source, tuple(source.columns), first, first, "as told", meaning)
     for k in range(min(SEARCHED, len(grid.rows))):
         row = _with_what_stands_above(grid.rows, k)
+        if numeric(row):  # a point may be called A1, as an axis is
+            continue
         if _names_enough(row, source, meaning, grid.rows[k + 1 :]):
             return _laid_out(source, row, k, k + 1, f"line {grid.lines[k]}", meaning)
     start = next((k for k, row in enumerate(grid.rows) if numeric(row)), None)
