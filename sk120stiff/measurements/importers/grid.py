@@ -16,6 +16,7 @@ _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ":
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[.,']\d{3})*(?:(?<=\.\d{3}),|(?<=[,']\d{3})\.)\d+")
+_TEXT_MARK = re.compile(r"^'(?=[^']*$)")  # by which spreadsheets mark a text
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
 _COMMENT = ("//", "#", "%")
 _BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
@@ -175,7 +176,7 @@ def split(line: str, mark: str, place: str) -> list[str]:
             where=place,
             remedy="Quotation marks enclose a whole cell and end on its line.",
         ) from error
-    return [cell.strip().replace("\N{MINUS SIGN}", "-") for cell in cells]
+    return [_TEXT_MARK.sub("", cell.strip()).replace("\N{MINUS SIGN}", "-") for cell in cells]
 
 
 def with_points(grid: Grid) -> Grid:

@@ -114,8 +114,8 @@ def command(
             name (motoman_sk120).
         out (FILE): The CSV file to write; a YAML file goes beside it.
         preview: Show what was understood; write nothing.
-        joints_file (FILE): Joint values, where they stand in a file of their own; matched by name,
-            else by order.
+        joints_file (FILE): Joint values, where they stand in a file of their own, or the robot's
+            program with its joint targets; matched by name, else by order.
         loads_file (FILE): Forces or payloads, in the same way.
         before (FILE): Positions of the same poses without load, in the same way; those of FILE are
             then under the load.

@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from sk120stiff.measurements.importers.columns.matrices import LOOKED_AT, ROTATION
 from sk120stiff.measurements.importers.columns.words import unit_of_header
 from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet
+from sk120stiff.measurements.importers.grid import is_number
 from sk120stiff.measurements.table.columns import QUATERNION
 
 # By which names three angles stand side by side; the order is that of the numbers in a row.
@@ -16,7 +20,8 @@ MATRICES = (  # row by row, and column by column
     "r00 r01 r02 r10 r11 r12 r20 r21 r22",
     "nx ny nz ox oy oz ax ay az",
 )
-NUMBERED = ("q1", "q2", "q3", "q4")  # a quaternion as ABB writes it, where joints have other names
+NUMBERED = (("q0", "q1", "q2", "q3"), ("q1", "q2", "q3", "q4"))  # Leica's and ABB's quaternions
+FEWEST = 3  # rows that tell a quaternion
 
 
 def named(sheet: Sheet) -> Sheet:
@@ -44,15 +49,40 @@ def orientation_columns(sheet: Sheet) -> tuple[Column, ...]:
 
 
 def with_quaternions(
-    names: Sequence[str], meanings: Sequence[tuple[str, float] | None]
+    names: Sequence[str],
+    meanings: Sequence[tuple[str, float] | None],
+    rows: Sequence[Sequence[str]],
 ) -> Meanings:
-    """Meanings of columns where q1 to q4 are no joints: those have names of their own beside."""
+    """Meanings of numbered columns that are no joints but a quaternion, its scalar first.
+
+    Of q1 to q4 that are joints of other names beside them tell, else that in every row the four
+    numbers are one: so Q0 to Q3 of a Leica T-MAC are no joints either.
+
+    Args:
+        names, meanings: Of the columns, as their headers say.
+        rows: Cells below them.
+    """
     plain, out = [name.strip().lower() for name in names], list(meanings)
-    places = [plain.index(name) for name in NUMBERED if plain.count(name) == 1]
-    if any((known := meanings[k]) and not known[0].startswith("joint ") for k in places):
-        return out  # commanded joints, beside measured ones
-    others = [known[0] for k, known in enumerate(meanings) if known and k not in places]
-    if len(places) == len(NUMBERED) and all(f"joint {k}" in others for k in (1, 2, 3, 4)):
-        for place, meaning in zip(places, QUATERNION, strict=True):
-            out[place] = (meaning, 1.0)
+    for numbered in NUMBERED:
+        places = [plain.index(name) for name in numbered if plain.count(name) == 1]
+        if len(places) < len(numbered):
+            continue
+        if any((known := meanings[k]) and not known[0].startswith("joint ") for k in places):
+            continue  # commanded joints, beside measured ones
+        others = {known[0] for k, known in enumerate(meanings) if known and k not in places}
+        if {f"joint {k}" for k in (1, 2, 3, 4)} <= others or _are_unit(rows, places):
+            for place, meaning in zip(places, QUATERNION, strict=True):
+                out[place] = (meaning, 1.0)
+            return out
     return out
+
+
+def _are_unit(rows: Sequence[Sequence[str]], places: Sequence[int]) -> bool:
+    """Are the numbers of every row that has them the parts of a unit vector?"""
+    full = [
+        [float(row[k]) for k in places]
+        for row in rows
+        if all(k < len(row) and is_number(row[k]) for k in places)
+    ]
+    lengths = np.linalg.norm(np.array(full[:LOOKED_AT]).reshape(-1, len(places)), axis=1)
+    return len(lengths) >= FEWEST and bool((np.abs(lengths - 1.0) < ROTATION).all())

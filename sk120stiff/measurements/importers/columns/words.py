@@ -84,7 +84,7 @@ JOINT = re.compile(
     r"(?:q|j|jt|jnt|joint|gelenk|axis|achse|axe|asse|eje|ax|rax|a|th|theta|θ)[ _]?(\d+)"
     r"(?: (?:angle|pos(?:ition)?|value))?"
 )
-_BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*(.*)")
+_BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*")
 _TAIL = re.compile(
     r"(.+?)(?:(?:\s*[/,]\s*|\s+in\s+|\s)(mm|um|µm|m|inch|in|deg|rad|°|N|kN|daN|kgf|kp|kg|s)"
     r"|_(mm|um|deg|rad|kg))"
@@ -125,11 +125,10 @@ UNITS_IN_WORDS = {  # words of units, as headers and rows of units have them
 def unit_of_header(header: str) -> tuple[str, str | None]:
     """Name and unit of a header as people write it: ``X (mm)``, ``X [Meters]``, ``x_mm``."""
     header = in_english(header)
-    match = _BRACKETS.fullmatch(header.strip())
-    if match:
-        unit = UNITS_IN_WORDS.get(match[2].strip().lower(), match[2].strip())
+    for match in _BRACKETS.finditer(plain := header.strip()):  # U(95) X [mm] has two
+        unit = UNITS_IN_WORDS.get(match[1].strip().lower(), match[1].strip())
         if is_unit(unit):
-            return f"{match[1]} {match[3]}".strip(), unit
+            return f"{plain[: match.start()]} {plain[match.end() :]}".strip(), unit
     tail = _TAIL.fullmatch(header.strip())
     if tail:
         return tail[1], tail[2] or tail[3]

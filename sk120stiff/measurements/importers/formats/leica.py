@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
 from sk120stiff.measurements.importers.layout.layout import layout_of, sheet_by_order
 
-_SAYS = re.compile(r"leica|hexagon|emscon|axyz|\bat ?(?:40[123]|9[36]0|500)\b|u ?95", re.IGNORECASE)
+_SAYS = re.compile(
+    r"leica|hexagon|emscon|axyz|\bat ?(?:40[123]|9[36]0|500)\b|u ?\(?95", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)

@@ -173,7 +173,8 @@ def _laid_out(
     ]
     known, units, told = _understood(source, headers, meaning, grid.rows[first:], units)
     places = [p or f"the header, {stated}" * bool(u) for p, u in zip(places, units, strict=True)]
-    meanings = as_measured(with_quaternions([name for name, _ in named], known))
+    below = grid.rows[first:]
+    meanings = as_measured(with_quaternions([name for name, _ in named], known, below))
     said = file_units([text for _, text in (*above, *grid.comments)])
     for k, each in enumerate(meanings):
         kind = kind_of(each[0]) if each else None
