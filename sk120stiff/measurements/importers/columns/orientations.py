@@ -20,7 +20,8 @@ MATRICES = (  # row by row, and column by column
     "r00 r01 r02 r10 r11 r12 r20 r21 r22",
     "nx ny nz ox oy oz ax ay az",
 )
-NUMBERED = (("q0", "q1", "q2", "q3"), ("q1", "q2", "q3", "q4"))  # Leica's and ABB's quaternions
+FROM_0 = ("q0", "q1", "q2", "q3")  # a quaternion as Leica writes it
+NUMBERED = ("q1", "q2", "q3", "q4")  # and as ABB does
 FEWEST = 3  # rows that tell a quaternion
 
 
@@ -63,7 +64,7 @@ def with_quaternions(
         rows: Cells below them.
     """
     plain, out = [name.strip().lower() for name in names], list(meanings)
-    for numbered in NUMBERED:
+    for numbered in (FROM_0, NUMBERED):
         places = [plain.index(name) for name in numbered if plain.count(name) == 1]
         if len(places) < len(numbered):
             continue
