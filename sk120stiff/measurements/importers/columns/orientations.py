@@ -22,7 +22,7 @@ MATRICES = (  # row by row, and column by column
 )
 FROM_0 = ("q0", "q1", "q2", "q3")  # a quaternion as Leica writes it
 NUMBERED = ("q1", "q2", "q3", "q4")  # and as ABB does
-FEWEST = 3  # rows that tell a quaternion
+FEWEST = 3  # different rows that tell a quaternion
 
 
 def named(sheet: Sheet) -> Sheet:
@@ -56,8 +56,8 @@ def with_quaternions(
 ) -> Meanings:
     """Meanings of numbered columns that are no joints but a quaternion, its scalar first.
 
-    Of q1 to q4 that are joints of other names beside them tell, else that in every row the four
-    numbers are one: so Q0 to Q3 of a Leica T-MAC are no joints either.
+    Of q1 to q4 that are joints of other names beside them tell, else that there is no fifth and
+    that the four are of length one in every row: so Q0 to Q3 of a Leica probe are no joints either.
 
     Args:
         names, meanings: Of the columns, as their headers say.
@@ -71,7 +71,8 @@ def with_quaternions(
         if any((known := meanings[k]) and not known[0].startswith("joint ") for k in places):
             continue  # commanded joints, beside measured ones
         others = {known[0] for k, known in enumerate(meanings) if known and k not in places}
-        if {f"joint {k}" for k in (1, 2, 3, 4)} <= others or _are_unit(rows, places):
+        more = f"q{int(numbered[-1][1:]) + 1}" in plain
+        if {f"joint {k}" for k in (1, 2, 3, 4)} <= others or (not more and _are_unit(rows, places)):
             for place, meaning in zip(places, QUATERNION, strict=True):
                 out[place] = (meaning, 1.0)
             return out
@@ -79,11 +80,12 @@ def with_quaternions(
 
 
 def _are_unit(rows: Sequence[Sequence[str]], places: Sequence[int]) -> bool:
-    """Are the numbers of every row that has them the parts of a unit vector?"""
+    """Are the numbers of every row that has them the parts of a unit vector, of several?"""
     full = [
         [float(row[k]) for k in places]
         for row in rows
         if all(k < len(row) and is_number(row[k]) for k in places)
     ]
     lengths = np.linalg.norm(np.array(full[:LOOKED_AT]).reshape(-1, len(places)), axis=1)
-    return len(lengths) >= FEWEST and bool((np.abs(lengths - 1.0) < ROTATION).all())
+    several = len({tuple(row) for row in full[:LOOKED_AT]}) >= FEWEST
+    return several and bool((np.abs(lengths - 1.0) < ROTATION).all())
