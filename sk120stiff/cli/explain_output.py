@@ -100,18 +100,24 @@ def _write_pages(answer: Explanation | Explained, task: Task, out: Path) -> dict
     facts = reproducibility(command, task.inputs, seed=task.seed)
     if isinstance(answer, Explained):
         model, told = answer.final.model, answer.report
+        before = {"before": answer.base.model, "after": model} if answer.findings else {}
         return write_pages(
             out,
             lambda: scene_of_model(
                 yielding(model),
                 task.readings,
-                models={"model": model},
+                models=before or {"model": model},
                 title=model.robot.name,
                 subtitle=task.data.name,
                 model_file="model.yaml",
                 named=[finding.effect for finding in answer.findings],
             ),
-            lambda _: told(data=task.data.name, reproducibility=facts),
+            lambda scene: told(
+                data=task.data.name,
+                scene=scene,
+                scene_link="scene.html" if scene else "",
+                reproducibility=facts,
+            ),
         )
     return write_pages(
         out,

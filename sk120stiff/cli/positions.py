@@ -10,7 +10,7 @@ import numpy as np
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.shares import budget_tables_of
 from sk120stiff.cli.tables import table
-from sk120stiff.cli.values import value_lines
+from sk120stiff.cli.values import sure_values, value_lines
 from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import listed, micro
 from sk120stiff.explain import Explained
@@ -20,7 +20,7 @@ from sk120stiff.explain.positions.answer.next_step import headline, next_step_of
 from sk120stiff.identify.positions.words import findings, unseen
 from sk120stiff.model import Model, base_model
 
-FEW = 4  # parameters of one effect that are printed; those of a joint's frame stand in the report
+FEW = 4  # parameters of one effect beyond which only those that are surely not zero are printed
 
 
 def positions_answer(answer: Explained, document: Mapping[str, object], out: Path) -> Answer:
@@ -50,7 +50,7 @@ def _parts(answer: Explained, out: Path) -> list[object]:
         if faint:
             shown.append(f"  or, each with {likely(0.0)} here: {listed(faint, 'or')}")
         own = [p for p in answer.final.model.parameters if p.effect == item.effect]
-        shown += value_lines(own, hidden) if len(own) <= FEW else []
+        shown += value_lines(own, hidden) if len(own) <= FEW else sure_values(own, hidden)
         shown += [f"  {said}" for said in answer.only_together(item)]
     shown += (*answer.sums(), *answer.shares())
     whole = np.isfinite(answer.steps[-1].heldout_distance)

@@ -5,7 +5,21 @@ from __future__ import annotations
 from collections.abc import Container, Sequence
 
 from sk120stiff.model import Parameter
-from sk120stiff.show.wording import with_error
+from sk120stiff.show.wording import said_in, with_error
+
+SURE = 3.0  # standard errors by which a value of many is told from nothing
+
+
+def sure_values(own: Sequence[Parameter], unseen: Container[str]) -> list[str]:
+    """Those of many values that are surely not zero, in one line; the report has all."""
+    told = [p for p in own if p.name not in unseen and p.std and abs(p.value) > SURE * p.std]
+    return [f"  {', '.join(map(_readable, told))}"] if told else []
+
+
+def _readable(p: Parameter) -> str:
+    factor, unit = said_in(p.spec.unit, p.value)
+    std = None if p.std is None else factor * p.std
+    return f"{p.spec.name} {with_error(factor * p.value, std, unit)}"
 
 
 def value_lines(own: Sequence[Parameter], unseen: Container[str]) -> list[str]:

@@ -188,7 +188,8 @@ def _off_the_last(
 ) -> tuple[Array | None, dict[str, Array]]:
     """Positions (N, 3) as read, and as models have them, from those of the last, base axes [m].
 
-    Nothing where a model does not know where the instrument stands, or no position was read.
+    Every model places the instrument itself, so each is told by the gap that it leaves. Nothing
+    where a model does not know where the instrument stands, or no position was read.
     """
     from sk120stiff.effects import load_cases_of
     from sk120stiff.identify.positions.checks.reregistration import placed_anew
@@ -197,7 +198,7 @@ def _off_the_last(
     position = None if used.absolute is None else used.absolute.channels.position
     if position is None or not models:
         return None, {}
-    at: dict[str, Array] = {}
+    gaps: dict[str, Array] = {}
     parts = placed_anew([*models.values()][-1], used)
     if parts is not None and parts.parts:  # rows without a station have that of the best model
         used = parts.readings
@@ -209,17 +210,10 @@ def _off_the_last(
             said = predict(model, used).position
         except InputError:
             return None, {}
-        frames = instrument_frames(model, load_cases)
-        at[name] = _from_base(frames, np.asarray(said))
-    last = at[next(reversed(at))]
-    read = _from_base(frames, position)
-    return read - last, {name: own - last for name, own in at.items()}
-
-
-def _from_base(frames: tuple[Array, Array], seen: Array) -> Array:
-    """(N, 3) in base axes, of what an instrument of these frames sees [m]."""
-    R, t = frames
-    return np.asarray(np.einsum("nji,nj->ni", R, seen - t))
+        into = instrument_frames(model, load_cases)[0]
+        gaps[name] = np.einsum("nji,nj->ni", into, position - np.asarray(said))
+    last = gaps[next(reversed(gaps))]
+    return last, {name: last - own for name, own in gaps.items()}
 
 
 def _in_base(load_cases: LoadCases, values: Array) -> Array:

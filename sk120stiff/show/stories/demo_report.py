@@ -30,9 +30,11 @@ from sk120stiff.show.report import (
 )
 from sk120stiff.show.stories.demo_facts import OURS, PAPER, Demo
 from sk120stiff.show.stories.evidence_section import evidence_section
-from sk120stiff.show.stories.gap_section import on_the_arm, pose_rms, steps_table
+from sk120stiff.show.stories.gap_pictures import on_the_arm
+from sk120stiff.show.stories.gap_section import pose_rms, steps_table
 from sk120stiff.show.stories.hidden_cause import HiddenCause, hidden_section
 from sk120stiff.show.stories.limits_section import blind_section, next_section
+from sk120stiff.show.stories.scenes import arm_views
 from sk120stiff.show.stories.stiffness_section import stiffness_section
 from sk120stiff.show.stories.verdicts import lead_of
 from sk120stiff.show.stories.where_section import where_section
@@ -234,7 +236,7 @@ def _second_act(demo: Demo) -> Section:
                 caption="The gap of every pose, before and after."
                 + (" Dashed: what noise alone makes." if floor is not None else ""),
             ),
-            on_the_arm(found, demo.models),
+            on_the_arm(arm_views(found, demo.models), " at the largest load"),
         ],
     )  # fmt: skip
 

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from sk120stiff.arrays import Array
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.words import held_out_words, plain_words
 from sk120stiff.identify import Fit
 from sk120stiff.model import Model
-from sk120stiff.show.figures import gap_per_pose, gap_waterfall
+from sk120stiff.show.figures import gap_waterfall
 from sk120stiff.show.report import Block, Picture, SceneFrame, Section, Table
-from sk120stiff.show.stories.pictures import exaggeration, gap_vectors
+from sk120stiff.show.stories.gap_pictures import on_the_arm, per_pose, rms_of_poses
 from sk120stiff.show.stories.scenes import arm_views, models_of
 from sk120stiff.show.wording import counted, percent, um
-
-MANY = 40  # poses beyond which bars are no longer told apart
 
 
 def gap_section(
@@ -44,7 +40,10 @@ def gap_section(
     if len(answer.steps) > 1:
         blocks.append(waterfall(answer))
     models = models_of(answer)
-    blocks += [_per_pose(answer.base, models, floor), on_the_arm(answer.base, models)]
+    poses = answer.base.problem.load_cases.poses
+    gaps = {name: pose_rms(answer.base, model) for name, model in models.items()}
+    views = arm_views(answer.base, models)
+    blocks += [per_pose(poses, gaps, floor), on_the_arm(views, " at the largest load")]
     if scene:
         title = f"The arm at its {counted(len(answer.base.problem.load_cases.poses), 'pose')}"
         caption = "Choose a pose and a load: measured, predicted and gap vectors, before and after."
@@ -88,49 +87,7 @@ def waterfall(answer: Explanation) -> Picture:
     )
 
 
-def _per_pose(fit: Fit, models: dict[str, Model], floor: float | None) -> Picture | str:
-    poses = fit.problem.load_cases.poses
-    gaps = {name: pose_rms(fit, model) for name, model in models.items()}
-    if len(poses) > MANY:
-        worst = {name: um(float(values.max())) for name, values in gaps.items()}
-        told = ", ".join(f"{size} µm {name}" for name, size in worst.items())
-        if len(worst) == 1:  # a page with one model has no other to tell it from
-            told = f"{next(iter(worst.values()))} µm"
-        return f"There are {counted(len(poses), 'pose')}; the largest gap of one is {told}."
-    told = "; ".join(
-        f"{name} {um(float(values.min()))} to {um(float(values.max()))} µm"
-        for name, values in gaps.items()
-    )
-    return Picture(
-        lambda: gap_per_pose(poses, gaps, noise_floor=floor),
-        alt=f"Bars of the rms gap of {len(poses)} poses: {told}.",
-        caption="The gap of every pose.",
-    )
-
-
-def on_the_arm(fit: Fit, models: dict[str, Model]) -> Picture:
-    """Gap vectors at the largest load of every pose; of many poses those with the largest gaps."""
-    views = arm_views(fit, models)
-    first = next(iter(models))
-    ranked = sorted(views, key=lambda view: -float(np.linalg.norm(view.gaps[first])))
-    shown = ranked[:MANY]
-    largest = {
-        name: um(max(float(np.linalg.norm(view.gaps[name])) for view in shown)) for name in models
-    }
-    told = ", ".join(f"up to {value} µm {name}" for name, value in largest.items())
-    which = "every pose" if len(shown) == len(views) else f"the {MANY} poses with the largest gaps"
-    times = f"{exaggeration(shown):,.0f}".replace(",", "\u00a0")
-    return Picture(
-        lambda: gap_vectors(shown),
-        alt=f"The arm at {len(shown)} poses from above and from the side, with gap vectors {told}.",
-        caption=f"Gap vectors at the largest load of {which}, drawn {times} times too long.",
-    )
-
-
 def pose_rms(fit: Fit, model: Model) -> Array:
     """(poses,) rms gap per axis of a model on the readings of a fit [m]."""
-    load_cases = fit.problem.load_cases
-    gap = (fit.problem.measured - model.predict(load_cases))[fit.problem.read]
-    total = np.bincount(fit.problem.pose, gap**2, minlength=len(load_cases.poses))
-    count = np.bincount(fit.problem.pose, minlength=len(load_cases.poses))
-    return np.sqrt(total / np.maximum(count, 1))
+    gap = (fit.problem.measured - model.predict(fit.problem.load_cases))[fit.problem.read]
+    return rms_of_poses(gap, fit.problem.pose, len(fit.problem.load_cases.poses))

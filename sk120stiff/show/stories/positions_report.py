@@ -23,12 +23,27 @@ from sk120stiff.show.report import (
     Section,
     Table,
 )
+from sk120stiff.show.stories.positions_pictures import arm_at_poses, pictures_of_poses
 from sk120stiff.show.stories.sizes_sections import budget_section
 from sk120stiff.show.wording import said_in, um, with_error
 
 
-def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[str, str]) -> Report:
-    """Gap step by step, named causes with their values, what cannot be told, what is left."""
+def positions_report(
+    answer: Explained,
+    *,
+    data: str,
+    reproducibility: Mapping[str, str],
+    scene: str = "",
+    scene_link: str = "",
+) -> Report:
+    """Gap step by step, named causes with their values, what cannot be told, what is left.
+
+    Args:
+        answer: What was found.
+        data: Name of the measurements' file.
+        reproducibility: What the page was made of.
+        scene, scene_link: Text of the scene's page, and its address beside the report.
+    """
     first, end = answer.steps[0], answer.steps[-1]
     unit, away = answer.final.problem.unit, end.heldout_distance
     size, before = _size(answer), first.label if answer.displaced else "registered"
@@ -86,7 +101,13 @@ def positions_report(answer: Explained, *, data: str, reproducibility: Mapping[s
             ),
             Section(
                 "The gap, step by step",
-                [_steps(answer), steps, *map(Note, [*held, *answer.not_counted()])],
+                [
+                    _steps(answer),
+                    steps,
+                    *map(Note, [*held, *answer.not_counted()]),
+                    *pictures_of_poses(answer),
+                    *arm_at_poses(answer, scene, scene_link),
+                ],
             ),
             *([_budget(answer, families)] if len(answer.families) > 1 else []),
             *([moves] if moves is not None else []),
