@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sk120stiff.effects import CATALOGUE, Catalogue, Effect, effect
     from sk120stiff.errors import InputError, Refusal, ToolkitError, ToolkitWarning
     from sk120stiff.explain.answer.explanation import Explanation
+    from sk120stiff.explain.answer.verdict import Verdict, read_verdict
     from sk120stiff.explain.options import Options
     from sk120stiff.explain.run import explain
     from sk120stiff.exports import export
@@ -64,6 +65,7 @@ _HOME = {
         "sk120stiff.effects": "CATALOGUE Catalogue Effect effect",
         "sk120stiff.errors": "InputError Refusal ToolkitError ToolkitWarning",
         "sk120stiff.explain.answer.explanation": "Explanation",
+        "sk120stiff.explain.answer.verdict": "Verdict read_verdict",
         "sk120stiff.explain.options": "Options",
         "sk120stiff.explain.run": "explain",
         "sk120stiff.exports": "export",
@@ -102,6 +104,7 @@ __all__ = [
     "Schedule",
     "ToolkitError",
     "ToolkitWarning",
+    "Verdict",
     "base_model",
     "bundled_robots",
     "compensate",
@@ -118,6 +121,7 @@ __all__ = [
     "read",
     "read_measurements",
     "read_model",
+    "read_verdict",
     "simulate",
     "stiffness",
     "write_measurements",

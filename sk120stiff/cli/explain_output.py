@@ -16,11 +16,11 @@ from sk120stiff.cli.shares import budget_tables
 from sk120stiff.cli.tables import table
 from sk120stiff.cli.values import value_lines
 from sk120stiff.explain import Explained, Explanation
-from sk120stiff.explain.answer.document import BEST_GUESS
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.probabilities import probabilities
-from sk120stiff.explain.answer.saving import NEXT_POSES, RESULTS, VERDICT
+from sk120stiff.explain.answer.saving import RESULTS
 from sk120stiff.explain.answer.sizes import whole_size
+from sk120stiff.explain.answer.verdict import BEST_GUESS, NEXT_POSES, VERDICT
 from sk120stiff.explain.answer.words import (
     held_out_words,
     noise_words,

@@ -14,7 +14,7 @@ from sk120stiff.cli.values import sure_values, value_lines
 from sk120stiff.effects import LinearElastic
 from sk120stiff.errors import listed, micro
 from sk120stiff.explain import Explained
-from sk120stiff.explain.answer.document import BEST_GUESS
+from sk120stiff.explain.answer.verdict import BEST_GUESS
 from sk120stiff.explain.findings import likely, sentence_in
 from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
 from sk120stiff.identify.positions.words import findings, unseen
@@ -38,7 +38,7 @@ def yielding(model: Model) -> Model:
 
 
 def _parts(answer: Explained, out: Path) -> list[object]:
-    shown: list[object] = [headline(answer)]
+    shown: list[object] = [headline(answer), *answer.limits]
     hidden = unseen(answer.final)
     for item in answer.findings:
         shown.append(

@@ -1,7 +1,7 @@
 """Find where model and readings disagree, name what is missing, add it, show the gap shrink."""
 
-from sk120stiff.explain.answer.document import verdict_document
 from sk120stiff.explain.answer.explanation import Explanation
+from sk120stiff.explain.answer.verdict import Verdict, read_verdict
 from sk120stiff.explain.findings import Detectable, Finding
 from sk120stiff.explain.localise.localisation import Localisation
 from sk120stiff.explain.localise.places import localise
@@ -19,8 +19,9 @@ __all__ = [
     "Finding",
     "Localisation",
     "Options",
+    "Verdict",
     "explain",
     "localise",
-    "verdict_document",
+    "read_verdict",
     "where_sentences",
 ]

@@ -15,7 +15,8 @@ from sk120stiff.effects import Catalogue, Effect
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
 from sk120stiff.explain.advise.best_guess import contenders
 from sk120stiff.explain.advise.consequences import completed
-from sk120stiff.explain.answer.explanation import Explanation, Verdict
+from sk120stiff.explain.answer.explanation import Explanation
+from sk120stiff.explain.answer.verdict import Outcome
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.adequacy import Adequacy
@@ -274,7 +275,7 @@ def _where_it_binds(found: Selection, options: Options) -> tuple[str, ...]:
     )
 
 
-def _verdict(findings: Sequence[Finding], left: Adequacy) -> Verdict:
+def _verdict(findings: Sequence[Finding], left: Adequacy) -> Outcome:
     """What is confirmed is named, whatever is left beside it."""
     if not findings:
         return "outside" if left.lacking else "none"

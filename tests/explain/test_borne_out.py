@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sk120stiff.explain.answer.document import borne_out_document
+from sk120stiff.explain.answer.document import borne_out_entry
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.words import held_out_words
 from sk120stiff.explain.findings import Step
@@ -89,9 +89,9 @@ def test_text_report_and_document_say_it() -> None:
         "At the readings of held.csv the model with these names is off by 22.86 µm rms per axis, "
         "without them by 21.35: of what they add there 0.39 ± 0.23 is seen"
     )
-    told = borne_out_document(AGAINST)
-    assert told is not None and told["contradicted"] and told["poses"] == 5
-    assert borne_out_document(None) is None
+    told = borne_out_entry(AGAINST)
+    assert told is not None and told.contradicted and told.poses == 5
+    assert borne_out_entry(None) is None
 
 
 def balancer(masses: float) -> Any:

@@ -4,7 +4,6 @@ import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import Options
-from sk120stiff.explain.answer.document import verdict_document
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.options import candidates_for
 from sk120stiff.explain.select.brought import brought
@@ -64,4 +63,4 @@ def test_units_in_doubt_come_before_names(factor: float) -> None:
     assert next_step(answer).startswith(first) == (factor != 1.0)
     assert (" If they are right: " in next_step(answer)) == (factor != 1.0)
     assert (answer.units is not None) == (factor != 1.0)
-    assert verdict_document(answer, readings)["units"] == answer.units
+    assert answer.document().units == answer.units

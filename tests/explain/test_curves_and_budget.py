@@ -8,7 +8,7 @@ import pytest
 
 from sk120stiff import InputError, base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.explain import Options, verdict_document
+from sk120stiff.explain import Options
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.answer.sizes import whole_size
 from sk120stiff.explain.judge.budget import error_budget
@@ -123,7 +123,7 @@ def test_play_is_told_as_one_size_and_jumps_only_where_it_does(skewed):
     assert f"{1e6 * whole.value:.0f} ± " in whole.sentence
     assert ("no jump was found" in whole.sentence) or ("nowhere at once" in whole.sentence)
     assert "jumps" not in finding.effect.sentence()
-    assert verdict_document(skewed, skewed.readings)["effects"][0]["size"]["std"] == whole.std
+    assert skewed.document().effects[0].size.std == whole.std
 
 
 def test_a_gear_that_stiffens_is_told_by_its_stiffness_not_by_signs(springs):

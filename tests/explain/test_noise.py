@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sk120stiff import Model, base_model, load_robot
-from sk120stiff.explain import Explanation, verdict_document
+from sk120stiff.explain import Explanation
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.identify import fit, lack_of_fit
 from sk120stiff.identify.checks.yardstick import scatter
@@ -109,7 +109,7 @@ def test_one_question_has_one_number(springs):
     readings = hidden(seed=100, stated=False)
     answer = answered(springs, readings)
     found = fit(springs, readings)
-    document = verdict_document(answer, readings)
+    document = answer.document().as_keys()
     test = lack_of_fit(found)
     assert answer.verdict == "none"
     assert document["gap"]["p"] == pytest.approx(test.probability, rel=1e-9)
@@ -124,7 +124,7 @@ def test_an_unknown_noise_has_no_floor(springs):
     cause = BaseRocking("base_link", {"x": 2e-7, "y": 2e-7})
     readings = hidden(cause, loads=1, poses=40, stated=False)
     answer = answered(springs, readings)
-    document = verdict_document(answer, readings)
+    document = answer.document().as_keys()
     assert document["gap"]["noise_floor"] is None
     assert document["gap"]["p"] is None
     assert document["noise"]["source"] == "unknown"
@@ -146,7 +146,7 @@ def test_a_gap_of_rounding_is_nothing(springs):
     answer = answered(springs, readings)
     assert answer.base.rms < 1e-10
     assert answer.verdict == "none" and not answer.findings
-    document = verdict_document(answer, readings)
+    document = answer.document().as_keys()
     assert document["noise"]["source"] == "computed"
     assert "the readings were computed" in answer.yardstick.sentence()
 

@@ -12,7 +12,6 @@ from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate
 from sk120stiff.identify.positions.words import gap_sentence, known_calibration
@@ -295,7 +294,7 @@ def test_angles_alone_have_their_own_unit(tmp_path: Path) -> None:
     robot = sk.load_robot(data.robot, base="base", tool="tool")
     readings = data.with_joints(robot.actuated)
     answer = explain_positions(Model(robot), readings)
-    told = verdict_of_positions(answer)
+    told = answer.document().as_keys()
     assert told["gap"]["unit"] == "urad" and told["remainder"]["rms_um"] is None
     assert told["gap"]["steps"][0]["heldout_rms"] > 50.0
     assert "µm" not in " ".join(answer.left_over())

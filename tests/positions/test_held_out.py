@@ -13,7 +13,6 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.cli.positions import _parts
 from sk120stiff.explain.judge.borne_out import BorneOut
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.positions.answer.next_step import headline, next_step_of_positions
 from sk120stiff.explain.positions.judge.accounts import numbers_told
@@ -163,7 +162,7 @@ def test_a_file_that_speaks_against_the_names_does_so_in_the_headline(answer: Ex
     assert kept not in next_step_of_positions(told)
     guessed = next_step_of_positions(replace(answer, guess=answer.final, guess_heldout=1e-9))
     assert "best_guess.yaml is off by 0.001000 µm at poses left out" in guessed  # of no file
-    document = verdict_of_positions(told)
+    document = told.document().as_keys()
     assert document["gap"]["borne_out"]["contradicted"] is True
     assert document["holdout"]["rms_um"] == pytest.approx(1e6 * answer.heldout.rms)
-    assert verdict_of_positions(replace(answer, heldout=None))["holdout"] is None
+    assert replace(answer, heldout=None).document().holdout is None

@@ -12,7 +12,6 @@ from scipy.spatial.transform import Rotation
 import sk120stiff as sk
 from sk120stiff.data_checks.turns import turn_slip
 from sk120stiff.errors import InputError, Refusal, ToolkitWarning
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.positions.answer.next_step import next_step_of_positions
 from sk120stiff.identify.positions.calibrate import Calibration
@@ -163,8 +162,8 @@ def test_a_base_that_rocks_is_named(tmp_path: Path) -> None:
     assert share.std is not None
     assert abs(share.rms - np.sqrt(np.mean(rocks**2))) < 3.0 * share.std + 1e-6
     assert answer.budget[0].name in next_step_of_positions(answer)
-    entries = verdict_of_positions(answer)["budget"]
-    assert {item["name"]: item["rms_um"] for item in entries}["base_rocking:base"] == (
+    entries = answer.document().budget
+    assert {item.name: item.rms_um for item in entries}["base_rocking:base"] == (
         pytest.approx(1e6 * share.rms)
     )
 

@@ -14,12 +14,10 @@ from sk120stiff.cli.opening import open_data, provenance
 from sk120stiff.cli.outputs import write_pages
 from sk120stiff.cli.tables import progress_bar, shown
 from sk120stiff.effects import all_effects, load_cases_of
-from sk120stiff.explain import verdict_document
-from sk120stiff.explain.answer.saving import plan_of, replacing_results
+from sk120stiff.explain.answer.saving import replacing_results, write_verdict
+from sk120stiff.explain.answer.verdict import NEXT_POSES
 from sk120stiff.explain.candidates.absorbed import absorbed
 from sk120stiff.explain.run import explain_displacements
-from sk120stiff.files import write_atomically
-from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import fit
 from sk120stiff.measurements import write_measurements
 from sk120stiff.model import base_model, write_model
@@ -145,13 +143,12 @@ def _write(
     from sk120stiff.show.stories.demo_facts import OURS, PAPER
 
     where = provenance(data, readings)
-    following = None if made.answer.next_poses is None else "next_poses.csv"
-    verdict = {"schema": SCHEMA, **verdict_document(made.answer, readings, following)}
+    following = made.answer.next_readings()
     with replacing_results(out):
         write_model(replace(made.model, provenance=where), out / "model.yaml")
         if following is not None:
-            write_measurements(plan_of(made.answer, readings), out / following)
-        write_atomically(out / "verdict.json", as_json_text(verdict) + "\n")
+            write_measurements(following, out / NEXT_POSES)
+        write_verdict(made.answer.document(), out)
     tell(85, 100)
     inputs = [data, data.with_suffix(".yaml"), data.parent.parent / "sk120.urdf"]
     pages = write_pages(
@@ -167,7 +164,7 @@ def _write(
             made,
             cause,
             cause_link=f"{HIDDEN}/report.html" if (out / HIDDEN / "report.html").exists() else "",
-            next_poses=following or "",
+            next_poses="" if following is None else NEXT_POSES,
             scene=scene,
             scene_link="scene.html" if scene else "",
             reproducibility=reproducibility(where["command"], inputs),

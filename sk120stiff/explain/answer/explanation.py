@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,9 +25,9 @@ from sk120stiff.model import Share
 from sk120stiff.model.predicted import predict_what_holds
 
 if TYPE_CHECKING:
+    from sk120stiff.explain.answer.verdict import Outcome, Verdict
     from sk120stiff.show import Report
 
-Verdict = Literal["none", "named", "ambiguous", "outside"]
 SLIP_FITS = 3.0  # times the gap of the readings in use, rms, that a mended axis may be off
 
 
@@ -74,7 +74,7 @@ class Explanation:
         <Explanation: none; gap 17.2 µm rms>
     """
 
-    verdict: Verdict
+    verdict: Outcome
     findings: tuple[Finding, ...]
     base: Fit
     final: Fit
@@ -194,6 +194,22 @@ class Explanation:
         from sk120stiff.explain.answer.saving import plan_of
 
         return None if self.next_poses is None else plan_of(self, self.readings)
+
+    def document(self) -> Verdict:
+        """What `verdict.json` says, as an object: all numbers, probabilities and sentences.
+
+        Examples:
+            >>> import sk120stiff as sk
+            >>> data = sk.bundled_robots()["motoman_sk120"] / "data"
+            >>> readings = sk.read(data / "table2_measured.csv")
+            >>> answer = sk.explain(sk.base_model(sk.load_robot("motoman_sk120")), readings)
+            >>> found = answer.document()
+            >>> found.verdict, found.gap.unit, found.remainder.significant
+            ('none', 'um', False)
+        """
+        from sk120stiff.explain.answer.document import verdict_of
+
+        return verdict_of(self)
 
     def save(
         self, folder: str | os.PathLike[str], *, provenance: Mapping[str, str] | None = None

@@ -7,15 +7,15 @@ this place add up to one. Numbers of different places do not exclude one another
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
+from sk120stiff.explain.answer.verdict import Kind
 from sk120stiff.explain.judge.posterior import LISTED, NONE
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
     from sk120stiff.explain.findings import Finding
 
-Kind = Literal["named", "instead", "further", "none", "something_else"]
 SOMETHING_ELSE = "something_else"
 EVEN = 0.5  # probability of nothing below which nobody is told that nothing is missing
 

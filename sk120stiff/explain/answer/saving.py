@@ -14,9 +14,9 @@ import numpy as np
 
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import ToolkitWarning
-from sk120stiff.explain.answer.document import BEST_GUESS, verdict_document
+from sk120stiff.explain.answer.verdict import BEST_GUESS, NEXT_POSES, VERDICT, Verdict
 from sk120stiff.files import csv_text, together, write_atomically
-from sk120stiff.files.json_text import SCHEMA, as_json_text
+from sk120stiff.files.json_text import as_json_text
 from sk120stiff.identify import known_model
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.measurements.directions import in_the_frame
@@ -27,8 +27,6 @@ from sk120stiff.model.predicted import predict_what_holds, prediction_table
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
 
-VERDICT = "verdict.json"
-NEXT_POSES = "next_poses.csv"
 RESULTS = (
     VERDICT,
     "model.yaml",
@@ -53,8 +51,7 @@ def save(
     """
     out, digest = Path(folder), answer.readings.data_hash
     own = {"data_hash": f"sha256:{digest}"} if digest else {}
-    following = None if answer.next_poses is None else NEXT_POSES
-    document = {"schema": SCHEMA, **verdict_document(answer, answer.readings, following)}
+    verdict = answer.document()
     fitted = replace(
         known_model(answer.final, answer.remainder.left), provenance=own | dict(provenance or {})
     )
@@ -66,10 +63,16 @@ def save(
         if answer.guess is not None:
             guess = replace(known_model(answer.guess), provenance=fitted.provenance)
             write_model(guess, out / BEST_GUESS)
-        if following is not None:
-            write_measurements(plan_of(answer, answer.readings), out / following)
-        write_atomically(out / VERDICT, as_json_text(document) + "\n")
-    return document
+        if answer.next_poses is not None:
+            write_measurements(plan_of(answer, answer.readings), out / NEXT_POSES)
+        return write_verdict(verdict, out)
+
+
+def write_verdict(verdict: Verdict, out: Path) -> dict[str, object]:
+    """Write `verdict.json`; its content."""
+    keys = verdict.as_keys()
+    write_atomically(out / VERDICT, as_json_text(keys) + "\n")
+    return keys
 
 
 def replacing_results(out: Path) -> AbstractContextManager[None]:

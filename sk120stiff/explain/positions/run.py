@@ -11,6 +11,7 @@ from sk120stiff.effects import Catalogue, Effect, all_effects
 from sk120stiff.effects.geometry import JointOffset
 from sk120stiff.effects.options import Options as EffectOptions
 from sk120stiff.errors import InputError
+from sk120stiff.explain.answer.verdict import Outcome
 from sk120stiff.explain.findings import Contender
 from sk120stiff.explain.options import Options, refuse_unknown
 from sk120stiff.explain.positions.advise.detectable import detectable, probabilities
@@ -204,7 +205,7 @@ def _explained(
     gap = linear.gap(found.order, noise, held_out=True)
     chance = chance_of_noise(final)
     lacking = chance is not None and chance < LEVEL
-    verdict = "outside" if lacking else "none"
+    verdict: Outcome = "outside" if lacking else "none"
     if named:
         verdict = "named" if all(item.settled for item in named) else "ambiguous"
     return Explained(
@@ -231,6 +232,7 @@ def _explained(
         guess_heldout=guessed,
         where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
+        limits=options.limits,
         probabilities=shared(probabilities(now.posterior, found), named, final),
         following=following,
         readings=readings,

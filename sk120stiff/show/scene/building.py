@@ -189,7 +189,8 @@ def _off_the_last(
     """Positions (N, 3) as read, and as models have them, from those of the last, base axes [m].
 
     Every model places the instrument itself, so each is told by the gap that it leaves. Nothing
-    where a model does not know where the instrument stands, or no position was read.
+    where a model does not know where the instrument stands; of what was not read the last is where
+    the others are told from.
     """
     from sk120stiff.effects import load_cases_of
     from sk120stiff.identify.positions.checks.reregistration import placed_anew
@@ -198,7 +199,7 @@ def _off_the_last(
     position = None if used.absolute is None else used.absolute.channels.position
     if position is None or not models:
         return None, {}
-    gaps: dict[str, Array] = {}
+    seen: dict[str, tuple[Array, Array]] = {}
     parts = placed_anew([*models.values()][-1], used)
     if parts is not None and parts.parts:  # rows without a station have that of the best model
         used = parts.readings
@@ -207,13 +208,15 @@ def _off_the_last(
         moved = placed_anew(model, used)
         model = model if moved is None else moved.model
         try:
-            said = predict(model, used).position
+            said = np.asarray(predict(model, used).position)
         except InputError:
             return None, {}
-        into = instrument_frames(model, load_cases)[0]
-        gaps[name] = np.einsum("nji,nj->ni", into, position - np.asarray(said))
+        seen[name] = instrument_frames(model, load_cases)[0], said
+    nearest = np.where(np.isfinite(position), position, seen[next(reversed(seen))][1])
+    gaps = {name: np.einsum("nji,nj->ni", R, nearest - said) for name, (R, said) in seen.items()}
     last = gaps[next(reversed(gaps))]
-    return last, {name: last - own for name, own in gaps.items()}
+    told = {name: last - own for name, own in gaps.items()}
+    return np.where(np.isfinite(position), last, np.nan), told
 
 
 def _in_base(load_cases: LoadCases, values: Array) -> Array:

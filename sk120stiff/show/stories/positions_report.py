@@ -120,6 +120,7 @@ def positions_report(
                             *answer.weight(),
                             *findings(answer.final, answer.readings),
                             *answer.dropped,
+                            *answer.limits,
                             *answer.left_over(),
                         ]
                     )

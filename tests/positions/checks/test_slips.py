@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 import sk120stiff as sk
 from sk120stiff.errors import InputError
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.run import explain_positions
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.model import Model
@@ -75,7 +74,7 @@ def test_a_pushed_tracker_is_told_with_the_lines(verb, noise: str, tmp_path: Pat
 
 def test_what_was_taken_for_granted_is_the_first_thing_to_do(tmp_path: Path) -> None:
     moved, still = (
-        verdict_of_positions(explain(read(tmp_path, x, A)))["next_step"]
+        explain(read(tmp_path, x, A)).document().next_step
         for x in (pushed(X, np.arange(COUNT) >= 37), X)
     )
     assert moved.startswith("Before anything else make sure that tracker, marker or joint moved")

@@ -11,7 +11,6 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.explain.findings import likely
 from sk120stiff.explain.positions.answer.balancer import chance_of_gear
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.positions.answer.next_step import headline
 from tests.positions.arm import poses, tracked, urdf, write
@@ -46,7 +45,7 @@ def test_waves_larger_than_gears_make_are_open_as_those_of_a_balancer_too(
     assert (wave.exact == wave.untold == ("gravity_compensator:j2",)) == is_told
     said = [line for line in found.final.notes if line.startswith("Once per turn j2")]
     assert bool(said) == is_told
-    written = verdict_of_positions(found)
+    written = found.document().as_keys()
     entry = next(each for each in written["effects"] if each["name"] == "transmission_error")
     assert (entry["alternatives"] == ["gravity_compensator:j2"]) == is_told
     assert ("pressure or spring released" in written["next_step"]) == is_told
@@ -88,7 +87,7 @@ def test_a_large_wave_of_an_arm_without_masses_may_be_its_weight(tmp_path: Path)
     assert waves["j3"].untold == ()  # weight there goes with the angle of j2 as well
     said = " ".join(found.final.notes)
     assert "the arm's own weight, which the URDF does not state" in said
-    assert "masses and centres of mass into the URDF" in verdict_of_positions(found)["next_step"]
+    assert "masses and centres of mass into the URDF" in found.document().next_step
 
 
 def test_nothing_balances_an_upright_axis(tmp_path: Path) -> None:

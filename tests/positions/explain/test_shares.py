@@ -10,7 +10,6 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain.positions.answer import explained
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.explained import Explained
 from sk120stiff.explain.positions.judge.accounts import Account, numbers_told
 from sk120stiff.explain.positions.run import explain_positions
@@ -41,7 +40,7 @@ def test_a_share_is_that_of_the_table(answer: Explained) -> None:
     last = answer.findings[-1]
     assert last.effect.id == answer.steps[-1].label.removeprefix("+ ")
     assert last.share == pytest.approx(1.0 - after / before, rel=1e-9)
-    written = verdict_of_positions(answer)["effects"][-1]["evidence"]["heldout_gain"]
+    written = answer.document().effects[-1].evidence["heldout_gain"]
     assert written == last.share
 
 

@@ -11,7 +11,6 @@ import pytest
 import sk120stiff as sk
 from sk120stiff.errors import InputError
 from sk120stiff.explain.positions import run
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.next_step import headline
 from sk120stiff.explain.positions.judge.posterior import Posterior
 from sk120stiff.explain.positions.run import explain_positions
@@ -77,7 +76,7 @@ def test_names_that_stand_for_one_another_are_told_where_all_of_them_are_likely(
     assert told == ("none of them likely by itself" in headline(answer))
     if verdict == "outside":
         assert answer.guess_heldout < 0.9 * answer.steps[-1].heldout_rms
-        assert "best_guess.yaml is off by" in verdict_of_positions(answer)["next_step"]
+        assert "best_guess.yaml is off by" in answer.document().next_step
 
 
 def test_another_arm_is_refused_as_before(tmp_path: Path) -> None:

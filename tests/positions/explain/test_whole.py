@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 import sk120stiff as sk
-from sk120stiff.explain.positions.answer.document import verdict_of_positions
 from sk120stiff.explain.positions.answer.next_step import next_step_of_positions
 from sk120stiff.explain.positions.judge.accounts import heldout_on
 from tests.positions.arm import Arm, poses, tracked, write
@@ -30,7 +29,7 @@ def test_where_few_poses_confirm_few_names_everything_together_is_nearer(tmp_pat
     assert answer.whole is not None
     assert answer.whole < 0.9 * answer.steps[-1].heldout_rms
     assert "sk120stiff identify DATA --out calibrated.yaml" in next_step_of_positions(answer)
-    document = verdict_of_positions(answer)
+    document = answer.document().as_keys()
     assert document["whole_heldout_um"] == 1e6 * answer.whole
 
     new = poses(40, 99)  # that it is so is tried at poses that nobody read

@@ -160,8 +160,11 @@ def measured_keys(judged: Judged) -> dict[str, dict[str, Any]]:
 
 def budget_keys(judged: Judged) -> dict[str, object]:
     """The key `budget`: rms distances along the path."""
-    effects, joints = (share_entries(shares, DISTANCE) for shares in judged.budgets)
-    return {"effects": effects, "joints": joints}
+    names = ("effects", "joints")
+    return {
+        name: [entry.model_dump() for entry in share_entries(shares, DISTANCE)]
+        for name, shares in zip(names, judged.budgets, strict=True)
+    }
 
 
 def budget_parts(judged: Judged) -> list[object]:

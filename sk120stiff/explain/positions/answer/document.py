@@ -3,123 +3,132 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from sk120stiff.arrays import Index
 from sk120stiff.explain.answer.document import (
-    BEST_GUESS,
-    borne_out_document,
+    borne_out_entry,
+    detectable_entries,
     intervals_of,
     micrometres,
     parameter_entry,
     share_entries,
     share_of,
     step_entry,
+    suspect_entries,
 )
-from sk120stiff.explain.answer.saving import NEXT_POSES, VERDICT, replacing_results
+from sk120stiff.explain.answer.saving import replacing_results, write_verdict
+from sk120stiff.explain.answer.verdict import (
+    BEST_GUESS,
+    NEXT_POSES,
+    EffectEntry,
+    FamilyEntry,
+    GapEntry,
+    HoldoutEntry,
+    NoiseEntry,
+    OddsEntry,
+    ParameterEntry,
+    RemainderEntry,
+    RowEntry,
+    Verdict,
+)
 from sk120stiff.explain.findings import sentence_in
 from sk120stiff.explain.positions.answer.explained import Explained, Named
 from sk120stiff.explain.positions.answer.next_step import next_step_of_positions
 from sk120stiff.explain.positions.judge.accounts import HeldOutFile
 from sk120stiff.files import csv_text, write_atomically
-from sk120stiff.files.json_text import SCHEMA, as_json_text
 from sk120stiff.identify import Calibration, known_model
 from sk120stiff.identify.positions.residuals.remainder import remainder_entry
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
 from sk120stiff.identify.positions.uncertainty.undetected import beside_not_named
 from sk120stiff.identify.positions.words import findings, gap_sentence, unseen
-from sk120stiff.measurements import write_measurements
+from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model, write_model
 from sk120stiff.model.predicted import predict_channels, prediction_table
 
 SURE = 1.0 - 1e-9  # the largest probability that is written: no reading makes certain
 
 
-def verdict_of_positions(answer: Explained) -> dict[str, Any]:
-    """The content of `verdict.json`."""
+def verdict_of_positions(answer: Explained) -> Verdict:
+    """What was found in positions, in the form of `verdict.json`."""
     final, readings, held = answer.final, answer.readings, answer.heldout
     stated = final.problem.stated_sigma
-    reasons = unseen(final)
-    entries = _entries(final, reasons)
+    entries = _entries(final, unseen(final))
     lengths = bool(len(final.problem.lengths))
     um = micrometres if lengths else _none
-    return {
-        "schema": SCHEMA,
-        "verdict": answer.verdict,
-        "effects": [_effect(answer, item, entries) for item in answer.findings],
-        "parameters": [entries[p.name] for p in final.model.parameters if p.free],
-        "gap": {
-            "unit": "um" if lengths else "urad",
-            "noise_floor": None if stated is None else stated * 1e6,
-            "p": answer.chance,
-            "set_aside": int(final.wild.sum()),
-            "borne_out": borne_out_document(
-                None if held is None or not lengths else held.borne_out
-            ),
-            "steps": [
-                {**step_entry(step), "heldout_mean_distance": micrometres(step.heldout_distance)}
+    aside = _rows(readings, np.flatnonzero(final.wild))
+    return Verdict(
+        verdict=answer.verdict,
+        effects=[_effect(answer, item, entries) for item in answer.findings],
+        parameters=[entries[p.name] for p in final.model.parameters if p.free],
+        gap=GapEntry(
+            unit="um" if lengths else "urad",
+            noise_floor=None if stated is None else stated * 1e6,
+            p=answer.chance,
+            set_aside=len(aside),
+            borne_out=borne_out_entry(None if held is None or not lengths else held.borne_out),
+            steps=[
+                step_entry(step).model_copy(
+                    update={"heldout_mean_distance": micrometres(step.heldout_distance)}
+                )
                 for step in answer.steps
             ],
-        },
-        "holdout": None if held is None else _held_out(held, final.problem),
-        "families": [
-            {"name": name, "share_um": um(share)} for name, share in answer.families.items()
+        ),
+        holdout=None if held is None else _held_out(held, final.problem),
+        families=[
+            FamilyEntry(name=name, share_um=um(share)) for name, share in answer.families.items()
         ],
-        "budget": share_entries(answer.budget),
-        "budget_joints": share_entries(answer.joints_budget),
-        "springs_share": answer.springs,
-        "whole_heldout_um": um(answer.whole),
-        "remainder": {**remainder_entry(final), "where": list(answer.where)},
-        "probabilities": [
-            {"name": name, "probability": min(p, SURE), "kind": "marginal", "place": None}
+        budget=share_entries(answer.budget),
+        budget_joints=share_entries(answer.joints_budget),
+        springs_share=answer.springs,
+        whole_heldout_um=um(answer.whole),
+        remainder=RemainderEntry(**remainder_entry(final), where=list(answer.where)),
+        probabilities=[
+            OddsEntry(name=name, probability=min(p, SURE), kind="marginal", place=None)
             for name, p in sorted(answer.probabilities.items(), key=lambda item: -item[1])
         ],
-        "where": list(answer.where),
-        "suspects": [
-            {"name": item.id, "heldout_gain_um": um(item.heldout_gain)} for item in answer.suspects
-        ],
-        "best_guess": None if answer.guess is None else BEST_GUESS,
-        "best_guess_heldout_um": None if answer.guess is None else um(answer.guess_heldout),
-        "not_named": list(answer.dropped),
-        "not_observable": list(answer.hidden),
-        "frozen": [item.name for item in final.frozen],
-        "weak_directions": [item.sentence() for item in final.frozen],
-        "smallest_detectable": [asdict(item) for item in answer.smallest],
-        "noise": {
-            "model": gap_sentence(final),
-            "source": _source(final),
-            "sigma_um": um(stated),
-            "set_aside": [
-                {"pose": readings.pose[row], "line": int(readings.line[row])}
-                for row in np.flatnonzero(final.wild)
-            ],
-        },
-        "next_step": next_step_of_positions(answer),
-        "said": findings(final, readings),
-        "next_poses": None if answer.following is None else NEXT_POSES,
-    }
+        where=list(answer.where),
+        suspects=suspect_entries(answer.suspects, um),
+        best_guess=None if answer.guess is None else BEST_GUESS,
+        best_guess_heldout_um=None if answer.guess is None else um(answer.guess_heldout),
+        not_named=list(answer.dropped),
+        limits=list(answer.limits),
+        not_observable=list(answer.hidden),
+        frozen=[item.name for item in final.frozen],
+        weak_directions=[item.sentence() for item in final.frozen],
+        smallest_detectable=detectable_entries(answer.smallest),
+        noise=NoiseEntry(
+            model=gap_sentence(final), source=_source(final), sigma_um=um(stated), set_aside=aside
+        ),
+        next_step=next_step_of_positions(answer),
+        said=findings(final, readings),
+        next_poses=None if answer.following is None else NEXT_POSES,
+    )
 
 
-def _held_out(found: HeldOutFile, problem: PoseProblem) -> dict[str, Any]:
+def _rows(readings: Measurements, rows: Index) -> list[RowEntry]:
+    return [RowEntry(pose=readings.pose[k], line=int(readings.line[k])) for k in rows]
+
+
+def _held_out(found: HeldOutFile, problem: PoseProblem) -> HoldoutEntry:
     """How far the held-out readings are off."""
-    readings, rows = found.readings, np.flatnonzero(found.set_aside)
     ending = "um" if found.unit(problem) == "µm" else "urad"
-    return {
-        f"rms_{ending}": found.rms * 1e6,
-        "mean_distance_um": found.distance * 1e6 if np.isfinite(found.distance) else None,
-        "set_aside": [{"pose": readings.pose[k], "line": int(readings.line[k])} for k in rows],
-        f"rms_of_all_{ending}": found.rms_of_all * 1e6,
-        f"registered_rms_{ending}": found.registered * 1e6,
-        "placed_anew": found.anew,
-    }
+    sizes = {"rms": found.rms, "rms_of_all": found.rms_of_all, "registered_rms": found.registered}
+    return HoldoutEntry(
+        **{f"{name}_{ending}": size * 1e6 for name, size in sizes.items()},
+        mean_distance_um=found.distance * 1e6 if np.isfinite(found.distance) else None,
+        set_aside=_rows(found.readings, np.flatnonzero(found.set_aside)),
+        placed_anew=found.anew,
+    )
 
 
 def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) -> dict[str, Any]:
     """Write verdict, model and gaps, all in one moment; the content of verdict.json."""
-    document = verdict_of_positions(answer)
+    verdict = verdict_of_positions(answer)
     fitted = _known(answer, answer.final, provenance)
     readings = replace(answer.readings, use=answer.readings.use & ~answer.final.wild)
     predicted = predict_channels(fitted, readings)
@@ -130,8 +139,7 @@ def save_positions(answer: Explained, out: Path, provenance: Mapping[str, str]) 
             write_model(_known(answer, answer.guess, provenance), out / BEST_GUESS)
         if answer.following is not None:
             write_measurements(answer.following.readings, out / NEXT_POSES)
-        write_atomically(out / VERDICT, as_json_text(document) + "\n")
-    return document
+        return write_verdict(verdict, out)
 
 
 def _known(answer: Explained, found: Calibration, provenance: Mapping[str, str]) -> Model:
@@ -152,24 +160,22 @@ def _none(_radians: float | None) -> None:
     """What is no length has no size in µm."""
 
 
-def _effect(
-    answer: Explained, item: Named, entries: Mapping[str, dict[str, Any]]
-) -> dict[str, Any]:
+def _effect(answer: Explained, item: Named, entries: Mapping[str, ParameterEntry]) -> EffectEntry:
     problem = answer.final.problem
     own = [p for p in answer.final.model.parameters if p.effect == item.effect]
     share = share_of(answer.steps, item.effect)
-    return {
-        "name": item.effect.name,
-        "where": item.effect.where,
-        "alternatives": list(item.alternatives),
-        "exact_aliases": list(item.exact),
-        "probability": min(item.probability, SURE),
-        "share_um": micrometres(share) if len(problem.lengths) else None,
-        "parameters": [entries[p.name] for p in own],
-        "sentence": sentence_in(answer.final.model, item.effect),
-        "equation": item.effect.equation,
-        "axes": item.effect.axes,
-        "evidence": {
+    return EffectEntry(
+        name=item.effect.name,
+        where=item.effect.where,
+        alternatives=list(item.alternatives),
+        exact_aliases=list(item.exact),
+        probability=min(item.probability, SURE),
+        share_um=micrometres(share) if len(problem.lengths) else None,
+        parameters=[entries[p.name] for p in own],
+        sentence=sentence_in(answer.final.model, item.effect),
+        equation=item.effect.equation,
+        axes=item.effect.axes,
+        evidence={
             "folds_improved": item.gain.folds,
             "folds": answer.linear.folds,
             "heldout_gain": item.share,
@@ -177,14 +183,14 @@ def _effect(
             "heldout_gain_errors": item.gain.errors,
             "log_evidence": item.gain.evidence,
         },
-    }
+    )
 
 
-def _entries(final: Calibration, reasons: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+def _entries(final: Calibration, reasons: Mapping[str, str]) -> dict[str, ParameterEntry]:
     """Every parameter by its full name."""
     ends, out = intervals_of(final), {}
     for p in final.model.parameters:
         why = reasons.get(p.name) or (None if p.free else "counted in others, see weak_directions")
-        entry = parameter_entry(p, why, ends.get(p.name))
-        out[p.name] = {**entry, "plausible": abs(p.internal) <= final.problem.reach(p)}
+        plausible = bool(abs(p.internal) <= final.problem.reach(p))
+        out[p.name] = parameter_entry(p, why, ends.get(p.name), plausible=plausible)
     return out

@@ -29,6 +29,7 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model import Share
 
 if TYPE_CHECKING:
+    from sk120stiff.explain.answer.verdict import Outcome, Verdict
     from sk120stiff.show import Report
 
 SURE = 0.95  # probability of a name that is settled
@@ -118,9 +119,10 @@ class Explained:
         readings: What was explained, masked rows included.
         heldout: The gap at readings kept out of everything; None where there were none.
         moved: What was taken as moved in the middle of the campaign, in sentences.
+        limits: How the user limited the search, in sentences; empty if not at all.
     """
 
-    verdict: str
+    verdict: Outcome
     findings: tuple[Named, ...]
     base: Calibration
     final: Calibration
@@ -144,6 +146,7 @@ class Explained:
     readings: Measurements
     heldout: HeldOutFile | None = None
     moved: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         names = ", ".join(item.effect.id for item in self.findings)
@@ -303,6 +306,12 @@ class Explained:
     def next_readings(self) -> Measurements | None:
         """The poses and loads that would tell names apart, as a plan; None: none are needed."""
         return None if self.following is None else self.following.readings
+
+    def document(self) -> Verdict:
+        """What `verdict.json` says, as an object; see `Explanation.document`."""
+        from sk120stiff.explain.positions.answer.document import verdict_of_positions
+
+        return verdict_of_positions(self)
 
     def save(
         self, folder: str | os.PathLike[str], *, provenance: Mapping[str, str] | None = None

@@ -27,9 +27,11 @@ def headline(answer: Explained) -> str:
             "open: what is left may be noise."
         )
     if answer.verdict == "none":
-        return "Model and data agree: nothing is missing that these readings show."
+        so_far = " of what was looked for" if answer.limits else ""
+        return f"Model and data agree: nothing{so_far} is missing that these readings show."
     if answer.verdict == "outside":
-        return "Something is missing that no effect of the catalogue explains for sure."
+        which = "that was looked for" if answer.limits else "of the catalogue"
+        return f"Something is missing that no effect {which} explains for sure."
     left = answer.final.form is not None or answer.lacking
     more = "; more is left than noise makes" if left else ""
     if (held := _contradicted(answer)) is not None:
