@@ -77,11 +77,20 @@ class Slip:
 
 @dataclass(frozen=True)
 class Tried:
-    """One correction, and what a passive arm leaves of the mended sheet."""
+    """One correction, and what a passive arm leaves of the mended sheet.
+
+    Attributes:
+        corrections: What is mended.
+        sheet: The mended sheet.
+        found: What a passive arm does with it.
+        unmended: What it leaves of the same rows without the last correction, where that does
+            without some of them [m²]; a move of rows must not win by what it leaves out.
+    """
 
     corrections: tuple[Correction, ...]
     sheet: Sheet
     found: Passive
+    unmended: float | None = None
 
     @property
     def left(self) -> float:
@@ -185,7 +194,12 @@ def _tried(now: Tried, corrections: Iterable[Correction]) -> Iterator[Tried]:
                 own = _columns(sheet, told)
             except ToolkitError:
                 continue  # the arm cannot stand so
-        yield Tried((*now.corrections, correction), sheet, passive(own, sheet.measured))
+        unmended = None
+        if sheet.kept is not now.sheet.kept:
+            same = sheet.kept[now.sheet.kept]
+            unmended = passive(known[same], now.sheet.measured[same]).left
+        found = passive(own, sheet.measured)
+        yield Tried((*now.corrections, correction), sheet, found, unmended)
 
 
 def _columns(sheet: Sheet, told: int) -> Array:
@@ -208,9 +222,12 @@ def _clearly(now: Tried, other: Tried, ratio: float) -> bool:
     spare = told - now.sheet.robot.n
     if spare <= 0:
         return False
+    before = now.left
+    if other.unmended is not None:
+        before = min(before, other.unmended * float(np.exp(-2.0 * now.sheet.stretch)))
     if other.left <= 0.0:
-        return now.left > 0.0
-    gained = np.log(now.left / other.left)
+        return before > 0.0
+    gained = np.log(max(before, 1e-300) / other.left)
     return bool(gained > np.log(ratio) and spare * gained > LUCK)
 
 

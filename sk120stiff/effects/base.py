@@ -295,6 +295,20 @@ class Switching(Elastic):
     between two sides. The elongation is therefore a constant during the search for equilibrium.
     """
 
+    def by_onset(
+        self,
+        onset: Array,
+        change: Array,
+        load_cases: LoadCases,
+        values: Array,
+    ) -> Array | None:
+        """(N, k, P) by how much the elongation changes where these torques (N, k) do, (N, k, P).
+
+        None where the law jumps and is flat between its jumps. With a memory, the change of one
+        reading's torque tells in those that follow it.
+        """
+        return None
+
 
 class Geometric(Moving):
     """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p.

@@ -187,6 +187,11 @@ class Step:
     fit_rms: float
     heldout_rms: float
 
+    @property
+    def joined(self) -> tuple[str, ...]:
+        """Names that joined here: several where those between found no fit by themselves."""
+        return tuple(self.label.removeprefix("+ ").split(" + ")) if self.label.startswith("+ ") else ()
+
 
 @dataclass(frozen=True)
 class Contender:

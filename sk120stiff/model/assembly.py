@@ -154,7 +154,7 @@ class Assembly:
         """
         load = true_load(self.of(LoadError), load_cases, values)
         z_0 = self.start(load_cases, values)
-        onset = np.zeros_like(z_0)
+        onset, begun = np.zeros_like(z_0), None
         if any(isinstance(effect, Switching) for effect in self.effects):
             begun = self.mechanism.screws(z_0, load_cases.force_point)
             onset = begun.torques(load.at(begun.rotation))
@@ -171,7 +171,7 @@ class Assembly:
             weight=self.weight(springs, values),
             near=near,
         )
-        return Standing(load_cases, load, onset, rest)
+        return Standing(load_cases, load, onset, begun, rest)
 
     def solve(self, load_cases: LoadCases, values: Array) -> Solution:
         """Equilibrium and displacement for N readings and parameter values (P,).
@@ -188,7 +188,7 @@ class Assembly:
         displacement = stood.rest.screws.position - unloaded.screws.position[begin]
         readings = misread(self.of(ReadingError), load_cases, values, displacement)
         return Solution(
-            load_cases, stood.load, stood.onset, stood.rest,
+            load_cases, stood.load, stood.onset, stood.begun, stood.rest,
             unloaded=unloaded, begin=begin, readings=readings,
         )  # fmt: skip
 

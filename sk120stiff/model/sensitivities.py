@@ -7,14 +7,19 @@ the load does as the arm moves: what follows the tool turns with it),
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import LinearElastic
+from sk120stiff.effects import LinearElastic, LoadCases
 from sk120stiff.effects.base import Switching
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.standing import Solution, Standing
-from sk120stiff.stiffness import Equilibrium
+from sk120stiff.model.true_load import TrueLoad
+from sk120stiff.robot import Screws
+from sk120stiff.stiffness import Equilibrium, complementary_stiffness, follower_stiffness
+from sk120stiff.stiffness.wrench import rotate
 
 
 def standing_sensitivities(assembly: Assembly, solution: Solution, values: Array) -> Array:
@@ -47,14 +52,48 @@ def _standing(assembly: Assembly, solution: Standing, values: Array, adjoint: Ar
         out[:, :, part] += adjoint[:, :, index] @ moving.shifts(load_cases)
     if len(assembly.weighing):
         out[:, :, assembly.weighing] += _by_weight(assembly, rest, adjoint)
+    if solution.begun is not None and assembly.geometric:
+        change = _onset_by_geometry(assembly, solution, solution.begun, P)
+        _add_onset(out, assembly, solution, values, adjoint, change)
     return out
+
+
+def _onset_by_geometry(assembly: Assembly, solution: Standing, begun: Screws, P: int) -> Array:
+    """(N, n_z, P) derivative of the load's torques at the unloaded pose by errors of geometry."""
+    load_cases, load = solution.load_cases, solution.load
+    K = complementary_stiffness(begun, load.at(begun.rotation))
+    if load.follower is not None:
+        K = K + follower_stiffness(begun, rotate(begun.rotation, load.follower))
+    change = np.zeros((*K.shape[:2], P))
+    for shifted, part, index in assembly.geometric:
+        if not shifted.marks(load_cases):
+            change[:, :, part] = K[:, :, index] @ shifted.shifts(load_cases)
+    return change
+
+
+def _add_onset(
+    out: Array,
+    assembly: Assembly,
+    solution: Standing,
+    values: Array,
+    adjoint: Array,
+    change: Array,
+) -> None:
+    """Add what changes (N, n_z, P) of the torques do by which laws jump and remember."""
+    for effect, part, index in assembly.elastic:
+        if not isinstance(effect, Switching) or not values[part].any():
+            continue
+        onset, own = solution.onset[:, index], values[part]
+        found = effect.by_onset(onset, change[:, index], solution.load_cases, own)
+        if found is not None:
+            out += adjoint[:, :, index] @ found
 
 
 def pose_sensitivities(assembly: Assembly, stood: Standing, values: Array) -> Array:
     """(N, 6, P) exact derivative of where the point stands and how it is turned, base axes."""
     adjoint = stood.rest.adjoint(stood.rest.screws.jacobian, assembly.soft(values))
     out = _standing(assembly, stood, values, adjoint)
-    _add_loads(out, stood, adjoint)
+    _add_loads(out, assembly, stood, values, adjoint)
     return out
 
 
@@ -102,7 +141,7 @@ def _since_zero(
         out[:, :, part] -= adjoint_0[:, :, index] @ shifted.shifts(load_cases)
     if len(assembly.weighing):
         out[:, :, assembly.weighing] -= on @ _by_weight(assembly, before, bare)[begin]
-    _add_loads(out, solution, adjoint)
+    _add_loads(out, assembly, solution, values, adjoint)
     return out
 
 
@@ -128,7 +167,9 @@ def _by_weight(assembly: Assembly, rest: Equilibrium, adjoint: Array) -> Array:
     return np.asarray(adjoint @ (rest.weight.compliance @ stated[..., None]))
 
 
-def _add_loads(out: Array, solution: Standing, adjoint: Array) -> None:
+def _add_loads(
+    out: Array, assembly: Assembly, solution: Standing, values: Array, adjoint: Array
+) -> None:
     """Add the derivatives (N, k, P) by the parameters of the load errors."""
     load_cases, rest = solution.load_cases, solution.rest
     load = solution.load
@@ -136,8 +177,24 @@ def _add_loads(out: Array, solution: Standing, adjoint: Array) -> None:
         return
     loaded = rest.screws.at(load_cases.force_point)
     per_wrench = adjoint @ rest.compliance @ np.swapaxes(loaded.jacobian, -1, -2)  # (N, k, 6)
-    for axes, of in ((load_cases.rotation, load.of_steady), (loaded.rotation, load.of_follower)):
+    for part, columns in _by_load(load_cases, load, loaded.rotation):
+        out[:, :, part] += per_wrench @ columns
+    if solution.begun is not None:
+        J = solution.begun.jacobian
+        change = np.zeros((load_cases.count, J.shape[-1], out.shape[-1]))
+        for part, columns in _by_load(load_cases, load, solution.begun.rotation):
+            change[:, :, part] += np.swapaxes(J, -1, -2) @ columns
+        _add_onset(out, assembly, solution, values, adjoint, change)
+
+
+def _by_load(
+    load_cases: LoadCases, load: TrueLoad, rotation: Array
+) -> Iterator[tuple[slice, Array]]:
+    """Of each load error its part of the values and (N, 6, p) what it does to the load, base axes.
+
+    `rotation` (N, 3, 3) is of the tool with which a follower turns.
+    """
+    for axes, of in ((load_cases.rotation, load.of_steady), (rotation, load.of_follower)):
         for part, columns in of:
             halves = columns.reshape(len(columns), 2, 3, -1)  # forces, moments
-            turned = np.einsum("nij,nhjp->nhip", axes, halves).reshape(columns.shape)
-            out[:, :, part] += per_wrench @ turned
+            yield part, np.einsum("nij,nhjp->nhip", axes, halves).reshape(columns.shape)

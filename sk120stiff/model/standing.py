@@ -10,6 +10,7 @@ from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import LoadCases
 from sk120stiff.model.misread import Misread
 from sk120stiff.model.true_load import TrueLoad
+from sk120stiff.robot import Screws
 from sk120stiff.stiffness import Equilibrium
 
 
@@ -22,12 +23,14 @@ class Standing:
         load: The true load.
         onset: (N, n_z) torques of the load at the unloaded pose, which switch what jumps [N·m or
             N]; zero where nothing does.
+        begun: The unloaded arm as these torques have it; None where nothing jumps.
         rest: Equilibrium under load and weight.
     """
 
     load_cases: LoadCases
     load: TrueLoad
     onset: Array
+    begun: Screws | None
     rest: Equilibrium
 
 

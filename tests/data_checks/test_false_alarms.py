@@ -3,6 +3,8 @@
 The long table is scripts/11_data_checks.py.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,3 +62,54 @@ def test_loads_along_one_line_tell_no_more_than_one() -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_few_readings_of_uneven_gears_are_not_doubted(seed: int) -> None:
     assert find_slip(ur5().robot, uneven(seed, poses=7, loads=4)) is None
+
+
+def ladders(seed: int, poses: int, zeros: bool) -> Measurements:
+    """Weights put on and taken off again; the elbow rubs, its friction a row of sliding blocks."""
+    robot, rng = ur5().robot, np.random.default_rng(seed)
+    masses = np.array([0.0, 2.0, 4.0, 6.0, 8.0, 6.0, 4.0, 2.0, 0.0])
+    low, high = [-1.0, -1.9, 0.3, -2.1, -2.1, -1.5], [1.0, -0.5, 1.9, 0.3, -0.7, 1.5]
+    q = rng.uniform(low, high, (poses, 6))
+    J = robot.screws(q).linear_jacobian
+    parts = []
+    for k in range(poses):
+        blocks, began = np.zeros(3), None
+        for mass in masses:
+            torque = J[k].T @ [0.0, 0.0, -9.81 * mass]
+            blocks = np.clip(blocks, torque[2] - RUBS[0], torque[2] + RUBS[0])
+            turn = torque / (1e4 * np.array([4.2, 3.8, 3.6, 1.3, 1.2, 1.1]))
+            turn[2] += blocks @ RUBS[1]
+            began = J[k] @ turn if began is None else began
+            parts.append(J[k] @ turn - began)
+    moved = np.array(parts) + 8e-6 * rng.normal(size=(len(parts), 3))
+    load = np.zeros((len(moved), 6))
+    load[:, 2] = -9.81 * np.tile(masses, poses)
+    return Measurements(
+        pose=tuple(f"p{k}" for k in range(poses) for _ in masses),
+        joint_names=robot.actuated,
+        joints=np.repeat(q, len(masses), axis=0),
+        wrench=load,
+        displacement=moved,
+        use=np.full(len(moved), True) if zeros else load.any(axis=1),
+    )
+
+
+RUBS = np.array([2.0, 6.0, 14.0]), np.array([6e-6, 9e-6, 1.1e-5])  # N·m; rad/(N·m)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("zeros", [True, False])
+def test_ladders_of_a_gear_that_rubs_are_no_shifted_rows(seed: int, zeros: bool) -> None:
+    """Rows without load part the poses: a move of rows drops what it would have to explain."""
+    assert find_slip(ur5().robot, ladders(seed, 9, zeros)) is None
+
+
+def test_ladders_whose_joints_were_moved_are_told() -> None:
+    found = ladders(2, 16, True)
+    for shift in (2, -2):  # by one row it would be those without load alone
+        joints = np.roll(found.joints, shift, axis=0)
+        rows = np.arange(len(joints))
+        names = tuple(f"row{k}" for k in rows)
+        moved = replace(found, joints=joints, pose=names, zero_group=rows)
+        slip = find_slip(ur5().robot, moved)
+        assert slip is not None and "the joints seem to stand 2 rows" in slip.said

@@ -117,6 +117,18 @@ class FrictionHysteresis(GearEffect, Switching):
         shapes = [-next(held) if r else at_once for r in self.reaches]
         return constant_in_torque(np.stack(shapes, axis=-1), values)
 
+    def by_onset(
+        self, onset: Array, change: Array, load_cases: LoadCases, values: Array
+    ) -> Array | None:
+        """See `Switching.by_onset`: what is held back follows the torque until it slips."""
+        slips = np.array([r for r in self.reaches if r])
+        if not len(slips):
+            return None
+        h = np.array([h for h, r in zip(values, self.reaches, strict=True) if r])
+        course = _course(onset[:, 0], slips, load_cases, cycled=self.cycled)
+        held = course.changed(change[:, 0], load_cases)
+        return -np.tensordot(h / slips, held, axes=1)[:, None]
+
 
 def held_back(
     torque: Array, reaches: Array, load_cases: LoadCases, *, cycled: bool = False
@@ -133,7 +145,50 @@ def held_back(
         load_cases: The readings, in whose order the torques came.
         cycled: Before every zero reading the loads that follow it had been on and off.
     """
-    steps, zero, own = load_cases.history
+    return _course(torque, reaches, load_cases, cycled=cycled).at(load_cases)
+
+
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """What k parts of a gear hold back, step by step of g poses side by side.
+
+    Attributes:
+        held: (S, k, g) torque [N·m].
+        sticks: (S, k, g) it follows the torque of the load there, step by step.
+    """
+
+    held: Array
+    sticks: Mask
+
+    def at(self, load_cases: LoadCases) -> Array:
+        """(k, N) of every reading, beyond its zero reading."""
+        return _of_readings(self.held, load_cases)
+
+    def changed(self, change: Array, load_cases: LoadCases) -> Array:
+        """(k, N, P) the same of what changes (N, P) of the torque make of it."""
+        steps, _, _ = load_cases.history
+        torques = np.where((steps == IDLE)[..., None], 0.0, change[steps])
+        moves = np.diff(torques, axis=0, prepend=0.0)  # (S, g, P)
+        held = np.zeros((*self.held.shape[1:], change.shape[1]))
+        seen = np.zeros((len(steps), *held.shape))
+        for k in range(len(steps)):
+            held = np.where(self.sticks[k][..., None], held + moves[k], 0.0)
+            seen[k] = held
+        return _of_readings(seen, load_cases)
+
+
+def _of_readings(seen: Array, load_cases: LoadCases) -> Array:
+    """(k, N, ...) of every reading beyond its zero reading, from the steps (S, k, g, ...)."""
+    _, zero, own = load_cases.history
+    pose = load_cases.pose_column
+    return np.swapaxes(seen[own, :, pose] - seen[zero, :, pose], 0, 1)
+
+
+def _course(
+    torque: Array, reaches: Array, load_cases: LoadCases, *, cycled: bool = False
+) -> _Course:
+    """See `held_back`."""
+    steps, _, _ = load_cases.history
     idle = steps == IDLE
     torques = np.where(idle, 0.0, torque[steps])
     change = np.diff(torques, axis=0, prepend=0.0)
@@ -143,15 +198,18 @@ def held_back(
     reach = reaches[:, None]
     held = np.zeros((len(reaches), steps.shape[1]))
     seen = np.zeros((len(steps), *held.shape))
+    sticks = np.zeros(seen.shape, dtype=bool)
     for k in range(len(steps)):
-        held = np.minimum(np.maximum(held + change[k], -reach), reach)
+        free = held + change[k]
+        held = np.minimum(np.maximum(free, -reach), reach)
+        sticks[k] = (held == free) & ~fresh[k]
         if fresh[k].any():
             held = np.where(fresh[k], -reach * np.sign(torques[k]), held)
         if way is not None and idle[k].any():
             held = np.where(idle[k], -reach * way[k], held)
+            sticks[k] &= ~idle[k]
         seen[k] = held
-    pose = load_cases.pose_column
-    return np.asarray((seen[own, :, pose] - seen[zero, :, pose]).T)
+    return _Course(seen, sticks)
 
 
 def _sign_of_run(torques: Array, idle: Mask) -> Array:

@@ -128,6 +128,20 @@ class LostMotion(GearEffect, Switching):
             shapes = shapes - self._shapes(weight)
         return constant_in_torque(shapes, values)
 
+    def by_onset(
+        self, onset: Array, change: Array, load_cases: LoadCases, values: Array
+    ) -> Array | None:
+        """See `Switching.by_onset`: flanks have a slope, jumps have none."""
+        if not any(self.flanks):
+            return None
+        torque = (onset + self.weight_torque(load_cases))[:, 0]
+        slope = np.zeros(len(torque))
+        for value, (side, T) in zip(values, self._terms, strict=True):
+            if T:
+                here = SIDES[side] * torque > 0.0 if side else np.ones(len(torque), dtype=bool)
+                slope += np.where(here, value / T * (1.0 - np.tanh(torque / T) ** 2), 0.0)
+        return np.asarray(slope[:, None, None] * change)
+
     def _shapes(self, torque: Array) -> Array:
         """(N, p) twist per unit of each parameter at torques (N, 1)."""
         out = []

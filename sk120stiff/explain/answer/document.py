@@ -200,7 +200,7 @@ def detectable_entries(smallest: Iterable[Detectable]) -> list[DetectableEntry]:
 def share_of(steps: Sequence[Step], effect: Effect) -> float | None:
     """By how much the held-out gap fell when an effect joined alone [m]; None where it did not."""
     for before, step in pairwise(steps):
-        if step.label == f"+ {effect.id}":
+        if step.joined == (effect.id,):
             return before.heldout_rms - step.heldout_rms
     return None
 

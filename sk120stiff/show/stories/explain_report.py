@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 
 from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation
@@ -110,7 +111,9 @@ def _answer(answer: Explanation) -> Section:
 
 def _line(answer: Explanation, k: int) -> str:
     finding = answer.findings[k]
-    step, before = answer.steps[k + 1], answer.steps[k]
+    pairs = pairwise(answer.steps)
+    before, step = next(pair for pair in pairs if finding.effect.id in pair[1].joined)
+    beside = [f"`{name}`" for name in step.joined if name != finding.effect.id]
     c = finding.evidence.confirmation
     rivals = [f"`{name}`" for name in finding.alternatives]
     if len(rivals) > FEW + 1:
@@ -119,7 +122,8 @@ def _line(answer: Explanation, k: int) -> str:
     return (
         f"{sentence_in(answer.final.model, finding.effect)} (`{finding.effect.id}`{alternatives}) "
         f"{likely(finding.probability)}{' together' if rivals else ''}. Held-out gap "
-        f"{um(before.heldout_rms)} → {um(step.heldout_rms)} µm; better in {c.folds_improved} of "
+        f"{um(before.heldout_rms)} → {um(step.heldout_rms)} µm"
+        f"{f' together with {listed(beside)}' if beside else ''}; better in {c.folds_improved} of "
         f"{c.folds} folds; same name in {percent(c.frequency)} of resamplings."
     )
 
