@@ -190,7 +190,8 @@ class Step:
     @property
     def joined(self) -> tuple[str, ...]:
         """Names that joined here: several where those between found no fit by themselves."""
-        return tuple(self.label.removeprefix("+ ").split(" + ")) if self.label.startswith("+ ") else ()
+        first, *names = f" {self.label}".split(" + ")
+        return () if first else tuple(names)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from sk120stiff.effects.reading_drift import ReadingDrift
 from sk120stiff.effects.tool_compliance import NonlinearTool
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import base_model, model_from_text, model_text
+from tests.effects.arms import arm
 from tests.hidden.generator.causes_curves import MaxwellSlip
 
 POINT = np.array([0.06, 0.04, 0.15])
@@ -35,7 +36,8 @@ def pushed(robot, forces, branch=None, repeat=None):
         Measurements(
             pose=("1",) * count,
             joint_names=robot.actuated,
-            joints=np.tile([0.0, 0.2, 0.1, 0.0, 0.3, 0.0], (count, 1)),
+            joint_kinds=robot.kinds,
+            joints=np.tile([0.0, 0.2, 0.1, 0.0, 0.3, 0.0][: robot.n], (count, 1)),
             wrench=wrench,
             displacement=None,
             point=POINT,
@@ -90,11 +92,33 @@ def test_an_arm_that_was_loaded_before_its_zero_begins_in_its_loop(robot, reach)
         twist, state = advance(state, np.array([now]))
         twists.append(float(twist[0]) - now / K)
     slips = K * reach + h * K
-    law = FrictionHysteresis(JOINT, reaches=(slips,), cycled=True)
+    law = FrictionHysteresis(JOINT, reaches=(slips,), start="cycled")
     found = law.elongation(torque, load_cases, np.array([h])).value[:, 0]
     begun = -len(ladder) - 1  # where the last ladder but one ended, its zero is read
     assert np.allclose(found, np.array(twists[begun + 1 :]) - twists[begun], rtol=0, atol=1e-12)
     assert found[-1] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("reach", [2e-5, 1e-4, 2e-3], ids=["slips early", "slips", "sticks"])
+def test_a_gear_that_bears_the_arm_begins_where_its_weight_brought_it(reach):
+    """The weight comes first, then the ladder; the twist is read from the weight's on."""
+    robot, K, h = arm("six_axis"), 2e5, 3e-5
+    joint = FrictionHysteresis.places(robot)[1]
+    gear = MaxwellSlip(joint, {"half_width": h}, {"shares": (1.0,), "reach": (reach,)})
+    ladder = np.array([20, 60, 90, 60, 20, 0, -40, 10], float)
+    load_cases = pushed(robot, ladder, ("load",) * 3 + ("unload",) * 5)
+    slips = K * reach + h * K
+    law = FrictionHysteresis(joint, reaches=(slips,), start="weighed")
+    torque = law.load_torque(load_cases)
+    weight = float(law.weight_torque(load_cases)[0, 0])
+    assert abs(weight) > 1.0
+    advance, state, twists = gear.advance(K), None, []
+    for now in (0.0, weight, *(weight + torque[:, 0])):
+        twist, state = advance(state, np.array([now]))
+        twists.append(float(twist[0]) - now / K)
+    found = law.elongation(torque, load_cases, np.array([h])).value[:, 0]
+    assert np.allclose(found, np.array(twists[2:]) - twists[1], rtol=0, atol=1e-12)
+    assert type(law).at(robot, joint, Options(shape=law_names(law))).start == "weighed"
 
 
 def test_between_repeats_the_load_is_off(robot):
@@ -111,7 +135,7 @@ def test_between_repeats_the_load_is_off(robot):
         LostMotion(JOINT, flanks=(12.5,)),
         LostMotion(JOINT, flanks=(0.0, 30.0, 120.0), sided=True),
         FrictionHysteresis(JOINT, reaches=(15.0, 45.0)),
-        FrictionHysteresis(JOINT, reaches=(15.0, 45.0), cycled=True),
+        FrictionHysteresis(JOINT, reaches=(15.0, 45.0), start="cycled"),
         LinkBending("link_3_u", taper=-0.5, roll=True, planes=True),
         LinkBending("link_3_u", taper=0.6),
         BaseRocking("base_link", askew=True),

@@ -17,6 +17,7 @@ LAWS = {
     "friction_hysteresis": {
         "half_width_presliding_20": 2e-4, "half_width_presliding_90": 4e-4
     },
+    "friction, after the weight": {"half_width_weighed_20": 2e-4, "half_width_weighed_90": 4e-4},
     "friction, on and off before": {
         "half_width_cycled_20": 2e-4, "half_width_cycled_90": 4e-4
     },
@@ -26,6 +27,7 @@ LAWS = {
     },
 }  # fmt: skip
 KINDS = {
+    "friction, after the weight": "friction_hysteresis",
     "friction, on and off before": "friction_hysteresis",
     "lost motion, by sides": "lost_motion",
 }
@@ -66,7 +68,7 @@ def differences(model: Model, load_cases: LoadCases, values: Array, step: Array)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("sensed", [False, True])
 def test_the_derivative_is_that_of_finite_differences(law: str, sensed: bool) -> None:
-    model, load_cases = ladders("six", sensed)
+    model, load_cases = ladders("six_axis", sensed)
     robot, kind = model.robot, KINDS.get(law, law)
     where = CATALOGUE["lost_motion"].places(robot)[JOINT]
     model = model + CATALOGUE[kind].at(robot, where, Options(shape=tuple(LAWS[law])))

@@ -108,7 +108,7 @@ MODELS = {
         "lost_motion:joint_1_s",
         LostMotion("joint_2_l", 1.0, flanks=(0.0, 60.0), sided=True),
         FrictionHysteresis("joint_3_u", 1.0, reaches=(0.0, 80.0)),
-        FrictionHysteresis("joint_2_l", 1.0, reaches=(30.0,), cycled=True),
+        FrictionHysteresis("joint_2_l", 1.0, reaches=(30.0,), start="cycled"),
     ),
     "heavy gears": lambda: with_effects(
         six_axis_arm(),

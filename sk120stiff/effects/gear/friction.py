@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import (
     Switching,
     scale_of,
@@ -21,7 +21,18 @@ from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.robot import Robot
 
 REACHES = (0.02, 0.06, 0.15, 0.4)  # of the largest torque: after which a gear may start to slip
-HALF, REACH, CYCLED = "half_width", "half_width_presliding_", "half_width_cycled_"
+HALF = "half_width"
+Start = Literal["rest", "cycled", "weighed"]
+REACH: dict[Start, str] = {
+    "rest": f"{HALF}_presliding_",
+    "cycled": f"{HALF}_cycled_",
+    "weighed": f"{HALF}_weighed_",
+}
+BEFORE: dict[Start, str] = {
+    "rest": "",
+    "cycled": ", the load having gone up and down before",
+    "weighed": ", the arm's weight having come before",
+}
 
 
 @dataclass(frozen=True)
@@ -36,16 +47,18 @@ class FrictionHysteresis(GearEffect, Switching):
         p_k(t) = min(max(p_k(t − 1) + τ(t) − τ(t − 1), −r_k), r_k),   p_k(0) = 0
 
     An arm that was loaded and unloaded before its zero was read, as laboratories do until the loop
-    closes, begins where that left it: p_k(0) = −r_k sign(τ), with τ the loads of the ladder.
+    closes, begins where that left it: p_k(0) = −r_k sign(τ), with τ the loads of the ladder. One
+    that has its weight on the gear begins where that brought it: τ_g within ±r_k.
 
     Attributes:
         reaches: Torques r_k [N·m] after which it slips; 0: at once, on the branch that the readings
             tell.
-        cycled: The loads went up and down before every zero reading.
+        start: What the gear has from before: nothing, loads that went up and down before every
+            zero reading, or the arm's weight.
     """
 
     reaches: tuple[float, ...] = (0.0,)
-    cycled: bool = False
+    start: Start = "rest"
     name: ClassVar[str] = "friction_hysteresis"
     place: ClassVar[str] = "a joint"
     equation: ClassVar[str] = (
@@ -55,29 +68,31 @@ class FrictionHysteresis(GearEffect, Switching):
     says: ClassVar[str] = "Friction in {where} makes loading and unloading differ."
     axes: ClassVar[str] = "the axis of the joint itself"
     also: ClassVar[str] = (
-        f"{REACH}20: after a reversal it sticks until the torque has changed by r = 20 N*m; "
-        f"several add up. {CYCLED}20: the same where the load went up and down before the zero"
+        f"{REACH['rest']}20: after a reversal it sticks until the torque has changed by r = 20 "
+        f"N*m; several add up. {REACH['cycled']}20: the same where the load went up and down "
+        f"before the zero; {REACH['weighed']}20: where the arm's weight came before the load"
     )
     twins: ClassVar[tuple[str, ...]] = (LostMotion.name,)  # while loads only grow
 
     @classmethod
     def at(cls, robot: Robot, where: str, options: Options) -> Self:
         """The friction of one joint, pre-sliding where names of parameters tell."""
-        told, cycled = (
-            tuple(sorted(torques_told(options.shape, head, "torque of slipping")))
-            for head in (REACH, CYCLED)
-        )
-        if cycled:
-            return cls(where, scale_of(robot), cycled, cycled=True)
-        jump = HALF in options.shape or not told
-        return cls(where, scale_of(robot), (*([0.0] if jump else []), *told))
+        told: dict[Start, tuple[float, ...]] = {
+            start: tuple(sorted(torques_told(options.shape, head, "torque of slipping")))
+            for start, head in REACH.items()
+        }
+        for start in ("cycled", "weighed"):
+            if told[start]:
+                return cls(where, scale_of(robot), told[start], start)
+        jump = HALF in options.shape or not told["rest"]
+        return cls(where, scale_of(robot), (*([0.0] if jump else []), *told["rest"]))
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
         """Half width h of the loop, or of each part that slips after another torque."""
         return tuple(
             ParameterSpec(
-                f"{CYCLED if self.cycled else REACH}{r:g}" if r else HALF,
+                f"{REACH[self.start]}{r:g}" if r else HALF,
                 "rad",
                 "rad",
                 plausible=5e-4,
@@ -85,14 +100,15 @@ class FrictionHysteresis(GearEffect, Switching):
                 lower=0.0,
                 meaning="h, half the width of the loop"
                 + (f" of the part that slips after {r:g} N*m" if r else "")
-                + (", the load having gone up and down before" if self.cycled else ""),
+                + BEFORE[self.start],
             )
             for r in self.reaches
         )
 
     def other_laws(self, load_cases: LoadCases) -> tuple[FrictionHysteresis, ...]:
-        """Pre-sliding over each of `REACHES` of the largest torque, and over all of them; the
-        arm having been loaded before its zero was read, or not.
+        """Pre-sliding over each of `REACHES` of the largest torque, and over all of them.
+
+        Each from every start that there may have been.
 
         Where no load is taken off step by step, nothing tells one from another.
         """
@@ -101,18 +117,19 @@ class FrictionHysteresis(GearEffect, Switching):
             return ()
         reaches = tuple(float(f"{share * largest:.3g}") for share in REACHES)
         shapes = (*((r,) for r in reaches), reaches)
+        weighs = self.weight_torque(load_cases).any()
+        starts = [start for start in REACH if weighs or start != "weighed"]
         laws = (
-            *(replace(self, reaches=r, cycled=cycled) for cycled in (False, True) for r in shapes),
-            replace(self, reaches=(0.0,), cycled=False),
+            *(replace(self, reaches=r, start=start) for start in starts for r in shapes),
+            replace(self, reaches=(0.0,), start="rest"),
         )
         return tuple(law for law in laws if law != self)
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`."""
         slips = np.array([r for r in self.reaches if r])
-        held = iter(
-            held_back(torques[:, 0], slips, load_cases, cycled=self.cycled) / slips[:, None]
-        )
+        course = self._course(torques[:, 0], slips, load_cases)
+        held = iter(course.at(load_cases) / slips[:, None])
         at_once = -load_cases.branch * np.sign(torques[:, 0])
         shapes = [-next(held) if r else at_once for r in self.reaches]
         return constant_in_torque(np.stack(shapes, axis=-1), values)
@@ -125,31 +142,16 @@ class FrictionHysteresis(GearEffect, Switching):
         if not len(slips):
             return None
         h = np.array([h for h, r in zip(values, self.reaches, strict=True) if r])
-        course = _course(onset[:, 0], slips, load_cases, cycled=self.cycled)
-        held = course.changed(change[:, 0], load_cases)
+        held = self._course(onset[:, 0], slips, load_cases).changed(change[:, 0], load_cases)
         return -np.tensordot(h / slips, held, axes=1)[:, None]
 
-
-def held_back(
-    torque: Array, reaches: Array, load_cases: LoadCases, *, cycled: bool = False
-) -> Array:
-    """(k, N) what friction holds back at every reading beyond its zero reading [N·m].
-
-    Every pose begins without load and without memory; its loads follow one another in the order of
-    the readings, with none in between where a zero was read or a repeat begins. Before a series
-    that begins with a load that falls, more was on.
-
-    Args:
-        torque: (N,) torque of the load [N·m].
-        reaches: (k,) torques after which parts of the gear slip [N·m].
-        load_cases: The readings, in whose order the torques came.
-        cycled: Before every zero reading the loads that follow it had been on and off.
-    """
-    return _course(torque, reaches, load_cases, cycled=cycled).at(load_cases)
+    def _course(self, torque: Array, slips: Array, load_cases: LoadCases) -> Course:
+        weight = self.weight_torque(load_cases)[:, 0] if self.start == "weighed" else None
+        return course_of(torque, slips, load_cases, cycled=self.start == "cycled", weight=weight)
 
 
 @dataclass(frozen=True, eq=False)
-class _Course:
+class Course:
     """What k parts of a gear hold back, step by step of g poses side by side.
 
     Attributes:
@@ -184,10 +186,27 @@ def _of_readings(seen: Array, load_cases: LoadCases) -> Array:
     return np.swapaxes(seen[own, :, pose] - seen[zero, :, pose], 0, 1)
 
 
-def _course(
-    torque: Array, reaches: Array, load_cases: LoadCases, *, cycled: bool = False
-) -> _Course:
-    """See `held_back`."""
+def course_of(
+    torque: Array,
+    reaches: Array,
+    load_cases: LoadCases,
+    *,
+    cycled: bool = False,
+    weight: Array | None = None,
+) -> Course:
+    """What friction holds back at every step.
+
+    Every pose begins without load and without memory; its loads follow one another in the order of
+    the readings, with none in between where a zero was read or a repeat begins. Before a series
+    that begins with a load that falls, more was on.
+
+    Args:
+        torque: (N,) torque of the load [N·m].
+        reaches: (k,) torques after which parts of the gear slip [N·m].
+        load_cases: The readings, in whose order the torques came.
+        cycled: Before every zero reading the loads that follow it had been on and off.
+        weight: (N,) torque of the arm's weight that came before the loads [N·m].
+    """
     steps, _, _ = load_cases.history
     idle = steps == IDLE
     torques = np.where(idle, 0.0, torque[steps])
@@ -197,6 +216,8 @@ def _course(
     way = _sign_of_run(torques, idle) if cycled else None
     reach = reaches[:, None]
     held = np.zeros((len(reaches), steps.shape[1]))
+    if weight is not None:
+        held = np.minimum(np.maximum(weight[_first_rows(load_cases)], -reach), reach)
     seen = np.zeros((len(steps), *held.shape))
     sticks = np.zeros(seen.shape, dtype=bool)
     for k in range(len(steps)):
@@ -209,7 +230,7 @@ def _course(
             held = np.where(idle[k], -reach * way[k], held)
             sticks[k] &= ~idle[k]
         seen[k] = held
-    return _Course(seen, sticks)
+    return Course(seen, sticks)
 
 
 def _sign_of_run(torques: Array, idle: Mask) -> Array:
@@ -221,3 +242,8 @@ def _sign_of_run(torques: Array, idle: Mask) -> Array:
             sign[k] = np.where(idle[k], np.sign(peak), 0.0)
             peak = np.where(idle[k], 0.0, peak)
     return sign
+
+
+def _first_rows(load_cases: LoadCases) -> Index:
+    """(g,) a row of every pose."""
+    return np.unique(load_cases.pose_column, return_index=True)[1]

@@ -61,8 +61,8 @@ def _terms(effect: Elastic, values: Array) -> list[Term] | None:
             _term("tanh" if T else "sign", T, size, side, switch=True)
             for (T, side), size in zip(places, values, strict=True)
         ]
-    if type(effect) is FrictionHysteresis:
-        far = 2.0 if effect.cycled else 1.0  # after a cycle it slips a whole loop later
+    if type(effect) is FrictionHysteresis and effect.start != "weighed":
+        far = 2.0 if effect.start == "cycled" else 1.0  # after a cycle it slips a whole loop later
         return [
             _term("clip" if r else "sign", far * r, -h / (r or 1.0), switch=True, weight=False)
             for r, h in zip(effect.reaches, values, strict=True)
