@@ -17,6 +17,7 @@ from sk120stiff.measurements.placing.from_a_row_on import refuse_from_a_row_on
 from sk120stiff.measurements.placing.groups import of_all_groups
 from sk120stiff.measurements.placing.registration import Registration
 from sk120stiff.measurements.placing.slips import (
+    MIRRORED,
     ONE_COLUMN,
     Convention,
     markers,
@@ -35,6 +36,7 @@ from sk120stiff.robot import STANDARD_GRAVITY, Robot
 from sk120stiff.robot.rotations import rotation_vector
 
 FITS = 0.03  # of the spread of the positions: what no calibrated arm leaves after placing
+AS_WELL = 1.1  # times what mirrored positions leave, up to which other signs of joints do as well
 SUSPECT = 1e-3  # of the spread of the positions: what is worth a look for slips of the pen
 BETTER = 0.2  # of what is left, by which a slip of the pen must explain it
 FEWER = 50  # rows that sums of joints are looked for in: there are many
@@ -252,7 +254,8 @@ def _refuse_slips(
     one = InputError(
         f"{told}. {what}: then {1e3 * rms:.3g} mm are left", where=where, remedy=remedy
     )
-    if explains < least:
+    mirrored = what.endswith(MIRRORED)  # joints that count the other way do the same to most arms
+    if explains < least and not mirrored:
         raise one
     refuse_from_a_row_on(cloud, told, least, readings, rows)
     ways = [
@@ -264,7 +267,8 @@ def _refuse_slips(
         ways.insert(0, (one_zero, "the zero of one joint elsewhere"))
     for found_by, other in ways:
         way = found_by(cloud.some(FEWER))
-        if way.changed(readings.joint_names) and way.rms < least:
+        as_mirrored = mirrored and explains < BETTER * base and way.rms < AS_WELL * explains
+        if way.changed(readings.joint_names) and (way.rms < least or as_mirrored):
             way = nearer(cloud.some(FEWER), way)
             stands = standing(cloud.some(FEWER), way, _gravity(cloud.robot, readings))
             way, written = stands.way, _as_written(readings)
@@ -273,10 +277,13 @@ def _refuse_slips(
                 where=where,
                 remedy="Check the controller's convention. If it is so, write into the YAML file: "
                 f"{written(way)}; where a joint has an expression there already, put that in its "
-                f"place on the right.{stands.beside(written)}",
+                f"place on the right.{stands.beside(written)}"
+                + (
+                    f" Positions that are {MIRRORED}, leave {1e3 * rms:.3g} mm." if mirrored else ""
+                ),
                 standing=stands,
             )
-    if explains < BETTER * base and not what.startswith(ONE_COLUMN):
+    if explains < least or (explains < BETTER * base and not what.startswith(ONE_COLUMN)):
         raise one  # not all of it: a column alone in another unit would be
 
 

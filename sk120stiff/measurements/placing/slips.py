@@ -29,6 +29,7 @@ ZEROS = np.linspace(-np.pi, np.pi, 72, endpoint=False)  # rad; zeros of a joint 
 SAGGED = np.radians(0.25)  # rad from a quarter turn that sag makes of one
 FINE = 1e-5  # rad, to which one is found
 ONE_COLUMN = "The column of"
+MIRRORED = "mirrored: one axis has the other sign, or two axes are swapped"
 TIMES = (1.0, -1.0, 2.0, -2.0)  # another joint's share in a sum, and in one of the wrong sign
 
 
@@ -75,7 +76,7 @@ def slips(cloud: Cloud, names: tuple[str, ...]) -> Iterator[tuple[float, float, 
     yield (
         rms,
         rms,
-        "The positions look mirrored: one axis has the other sign, or two axes are swapped",
+        f"The positions look {MIRRORED}",
         "Check signs and order of x, y, z: the tracker's axes are right-handed.",
     )
     for i, j in combinations(range(len(names)), 2):
