@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.campaign.by_time import ByTime, by_time, clock_of
+from sk120stiff.measurements.importers.campaign.in_turn import in_turn
 from sk120stiff.measurements.importers.clock import DateOrder
 from sk120stiff.measurements.importers.contract import Column, Sheet, Unpaired
 
@@ -62,7 +63,10 @@ def paired(
                 "side by side in one file, x1 y1 z1 x2 y2 z2. Else import them one by one, each "
                 "with a file of its own.",
             )
-        found = _by_order(points, other, what, untold)
+        turned = in_turn(points, other.total)
+        points = turned or points
+        times = 1 if turned is None else points.total // other.total
+        found = _by_order(points, other, what, untold, times)
     rows, others = found.rows, found.others
     lost = list(points.skipped)
     if found.how == ORDER:
@@ -155,13 +159,13 @@ def _by_time(points: Sheet, other: Sheet, dates: DateOrder | None) -> _Pairs | s
     return _Pairs(rows, others, f"{TIME} ({found.say()})", left)
 
 
-def _by_order(points: Sheet, other: Sheet, what: str, untold: str) -> _Pairs:
-    """Row by row.
+def _by_order(points: Sheet, other: Sheet, what: str, untold: str, times: int = 1) -> _Pairs:
+    """Row by row, each row of the other file `times` times.
 
     Raises:
         InputError: The files are not equally long.
     """
-    if points.total != other.total:
+    if points.total != times * other.total:
         raise InputError(
             f"{points.total} points, but {other.total} rows of {what}, and their names do not "
             f"agree.{untold}".removesuffix("."),
@@ -171,8 +175,8 @@ def _by_order(points: Sheet, other: Sheet, what: str, untold: str) -> _Pairs:
             "at the end, and the message says from where on the rows are apart.",
         )
     place_of = {rank: k for k, rank in enumerate(other.rank)}
-    rows = [k for k, rank in enumerate(points.rank) if rank in place_of]
-    return _Pairs(rows, [place_of[points.rank[k]] for k in rows], ORDER, [])
+    rows = [k for k, rank in enumerate(points.rank) if rank // times in place_of]
+    return _Pairs(rows, [place_of[points.rank[k] // times] for k in rows], ORDER, [])
 
 
 def label_of(sheet: Sheet) -> Column | None:
