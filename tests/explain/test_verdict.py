@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 import sk120stiff as sk
 from sk120stiff.explain import Explained, Explanation, Verdict, read_verdict
+from sk120stiff.explain.positions.answer.next_step import headline
 from tests.positions.arm import NAMES, errors, poses, tracked, write
 
 FIT = (
@@ -70,6 +72,14 @@ def test_a_limited_search_of_positions_says_so(positions: Explained) -> None:
     told = "Only these were looked for: joint_frame."
     assert positions.document().limits == [told]
     assert told in positions.report().html()
+
+
+def test_an_arm_that_sags_elsewhere_comes_first(positions: Explained) -> None:
+    """Names and springs rest on where gravity points: headline and advice begin with that."""
+    askew = replace(positions, off_level=("The arm sags as if its base stood 3 deg off level.",))
+    assert askew.document().next_step.startswith("First settle to which side the arm sags")
+    assert "sags to another side" in headline(askew)
+    assert "sags" not in positions.document().next_step + headline(positions)
 
 
 @pytest.mark.parametrize(

@@ -233,6 +233,7 @@ def _explained(
         where=where_it_lives(linear, gap, replace(seen, form=final.form), readings, inside),
         smallest=detectable(linear, found),
         limits=options.limits,
+        off_level=hangs,
         probabilities=shared(probabilities(now.posterior, found), named, final),
         following=following,
         readings=readings,

@@ -120,6 +120,7 @@ class Explained:
         heldout: The gap at readings kept out of everything; None where there were none.
         moved: What was taken as moved in the middle of the campaign, in sentences.
         limits: How the user limited the search, in sentences; empty if not at all.
+        off_level: That the arm sags to another side than its file says, in a sentence if so.
     """
 
     verdict: Outcome
@@ -147,6 +148,7 @@ class Explained:
     heldout: HeldOutFile | None = None
     moved: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()
+    off_level: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         names = ", ".join(item.effect.id for item in self.findings)

@@ -34,6 +34,8 @@ def headline(answer: Explained) -> str:
         return f"Something is missing that no effect {which} explains for sure."
     left = answer.final.form is not None or answer.lacking
     more = "; more is left than noise makes" if left else ""
+    if answer.off_level:
+        more += "; but the arm sags to another side than its file says"
     if (held := _contradicted(answer)) is not None:
         more += f"; but {held.file} speaks against the model with what was named"
     open_ones = [item for item in answer.findings if not item.settled]
@@ -78,6 +80,11 @@ MOVED = (
     "as it was taken (see what else was found): all that follows rests on it."
 )
 
+LEVEL = (
+    "First settle to which side the arm sags (see what else was found): gravity, or loads that do "
+    "not hang along it, moves springs and names; state it and run this again."
+)
+
 
 def next_step_of_positions(answer: Explained) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
@@ -102,6 +109,7 @@ def next_step_of_positions(answer: Explained) -> str:
         said.insert(
             0, f"{beyond}: elsewhere than near these poses the model may be off by as much."
         )
+    said = [LEVEL, *said] if answer.off_level else said
     said = [MOVED, *said] if answer.moved else said
     named = {item.effect.id for item in answer.findings}
     most = next((share for share in answer.budget if share.name in named), None)
