@@ -270,13 +270,21 @@ def _refuse_balls(document: UrdfDocument, base: str, tool: str, rest: Mapping[st
 
 
 def _tell(document: UrdfDocument, on_way: Sequence[Finding]) -> None:
-    """Warn of every repair that touches kinematics or masses; `check` tells the rest."""
-    told = [finding for finding in (*document.warnings, *on_way) if finding.code not in HARMLESS]
-    for finding in told[:_MOST_WARNINGS]:
-        warn(f"{document.place}: {finding}", stacklevel=4)
-    if len(told) > _MOST_WARNINGS:
-        more = len(told) - _MOST_WARNINGS
-        warn(f"{document.place}: {more} more findings; see check", stacklevel=4)
+    """Warn of every repair that touches kinematics or masses, once of each kind.
+
+    `check` tells the rest, and where each is.
+    """
+    told: dict[tuple[str, str], list[Finding]] = {}
+    for finding in (*document.warnings, *on_way):
+        if finding.code not in HARMLESS:
+            told.setdefault((finding.code, finding.message), []).append(finding)
+    groups = list(told.values())
+    for first, *others in groups[:_MOST_WARNINGS]:
+        more = f" ({len(others)} more of this kind; see check)" if others else ""
+        warn(f"{document.place}: {first}{more}", stacklevel=4)
+    if len(groups) > _MOST_WARNINGS:
+        count = sum(map(len, groups[_MOST_WARNINGS:]))
+        warn(f"{document.place}: {count} more findings; see check", stacklevel=4)
 
 
 def _check_actuated(
