@@ -12,6 +12,7 @@ from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed, micro
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.checks.acting_alike import acting_alike
+from sk120stiff.identify.positions.checks.mistyped_joint import mistyped_joints
 from sk120stiff.identify.positions.residuals.line_of_sight import by_line_of_sight
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
 from sk120stiff.identify.positions.residuals.remainder import remainder_at_other_poses
@@ -166,6 +167,7 @@ def findings(found: Calibration, readings: Measurements) -> list[str]:
         )
         said.append(f"{lie} set aside:")
         said += _some([_wild(found, readings, int(row)) for row in rows])
+        said += [f"  {each}" for each in mistyped_joints(found, readings, SHOWN)]
     return said
 
 
