@@ -18,7 +18,7 @@ OF_LOADS: tuple[Fault, ...] = (
     ),
     *of(
         "model/sensitivities.py", *tests("positions", "sensitivities"),
-        errors_of_a_sensor_along_the_unloaded_tool=("(loaded.rotation, load.of_follower)", "(load_cases.rotation, load.of_follower)"),
+        errors_of_a_sensor_along_the_unloaded_tool=("_by_load(load_cases, load, loaded.rotation)", "_by_load(load_cases, load, load_cases.rotation)"),
     ),
     *of(
         "identify/checks/tool_axes.py", *tests("identify", "tool_axes"),

@@ -10,7 +10,6 @@ from sk120stiff.effects.base import (
     LoadError,
     Mounting,
     ReadingError,
-    Switching,
     Viewpoint,
     Weighing,
 )
@@ -21,6 +20,7 @@ from sk120stiff.effects.load_cases import LoadCases, load_case, load_cases_of
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
 from sk120stiff.effects.reference import Reference, references_of
+from sk120stiff.effects.switching import Switching
 from sk120stiff.effects.words import catalogue_words, comment_lines, words_of
 
 __all__ = [

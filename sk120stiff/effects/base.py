@@ -287,29 +287,6 @@ class AxisByAxis(LinearElastic):
         return np.array([np.diag(row) for row in np.eye(len(self.parameters))])
 
 
-class Switching(Elastic):
-    """An elastic law that jumps with the sign of a torque.
-
-    It is given the torques of the true load at the unloaded pose: they decide the side on which a
-    joint comes to rest. Were the torques of the loaded pose asked, an arm could find no rest
-    between two sides. The elongation is therefore a constant during the search for equilibrium.
-    """
-
-    def by_onset(
-        self,
-        onset: Array,
-        change: Array,
-        load_cases: LoadCases,
-        values: Array,
-    ) -> Array | None:
-        """(N, k, P) by how much the elongation changes where these torques (N, k) do, (N, k, P).
-
-        None where the law jumps and is flat between its jumps. With a memory, the change of one
-        reading's torque tells in those that follow it.
-        """
-        return None
-
-
 class Geometric(Moving):
     """The rigid geometry is wrong: coordinates start from elsewhere, z₀ + Σ_p values[p] s_p.
 

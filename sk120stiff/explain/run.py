@@ -43,7 +43,7 @@ from sk120stiff.explain.select.best_selection import (
     held_against,
     of_readings,
 )
-from sk120stiff.explain.select.brought import brought, softer_than_customary
+from sk120stiff.explain.select.brought import brought, softer_instead, softer_than_customary
 from sk120stiff.explain.select.form import beside_form, forms
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
@@ -212,6 +212,7 @@ def explain_displacements(
         ),
         notes=(
             *softer_than_customary(final, found.regression.soft),
+            *([] if beyond is not None else softer_instead(found)),
             *forms(final, effects),
         ),
         units=units,

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import Elastic, LinearElastic, load_case
-from sk120stiff.effects.base import Switching
+from sk120stiff.effects.switching import Switching
 from sk120stiff.errors import InputError
 from sk120stiff.exports.contract import Request, Told
 from sk120stiff.exports.geometry import IN_MASSES, MEASURED, Geometry, geometry_of, weighing

@@ -33,7 +33,8 @@ from sk120stiff.effects import (
     ReadingError,
     Weighing,
 )
-from sk120stiff.effects.base import Misreading, Moving, Switching
+from sk120stiff.effects.base import Misreading, Moving
+from sk120stiff.effects.switching import Switching
 from sk120stiff.model.misread import misread
 from sk120stiff.model.standing import Solution, Standing
 from sk120stiff.model.true_load import true_load

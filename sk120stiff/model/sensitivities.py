@@ -13,7 +13,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array
 from sk120stiff.effects import LinearElastic, LoadCases
-from sk120stiff.effects.base import Switching
+from sk120stiff.effects.switching import Switching
 from sk120stiff.model.assembly import Assembly
 from sk120stiff.model.standing import Solution, Standing
 from sk120stiff.model.true_load import TrueLoad

@@ -38,7 +38,7 @@ def names(folder: Path) -> set[str]:
 
 
 def test_a_picture_that_fails_is_said_in_its_place(answer, task, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr("sk120stiff.show.stories.gap_section.gap_vectors", broken)
+    monkeypatch.setattr("sk120stiff.show.stories.gap_pictures.gap_vectors", broken)
     with pytest.warns(ToolkitWarning, match="picture.*Axis limits cannot be NaN"):
         document = write_answer(answer, task, tmp_path, report=True)
     assert names(tmp_path) == ANSWERS | {"report.html", "scene.html"}

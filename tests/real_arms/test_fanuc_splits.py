@@ -19,11 +19,9 @@ if fanuc.FOLDER.is_dir():
         script = runpy.run_path(str(place))
         model, data = script["readings"](fanuc.FOLDER, tmp_path, 30e-6)
         split = script["split"](model, data, 1)
-        first = split.answer.findings[0]
-        assert {"joint_tilt:joint_3", "link_bending:link_3"} <= {
-            first.effect.id,
-            *first.alternatives,
-        }
+        pair = {"joint_tilt:joint_3", "link_bending:link_3"}
+        told = [{each.effect.id, *each.alternatives} for each in split.answer.findings]
+        assert any(pair <= names for names in told), told
         assert all(np.isfinite(p.value) for p in split.answer.final.parameters[:3])
         assert split.answer.verdict == "ambiguous"
         assert split.answer.remainder.significant

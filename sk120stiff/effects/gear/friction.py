@@ -9,7 +9,6 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.effects.base import (
-    Switching,
     scale_of,
 )
 from sk120stiff.effects.elongation import Elongation
@@ -18,6 +17,7 @@ from sk120stiff.effects.gear.lost_motion import LostMotion
 from sk120stiff.effects.load_cases import IDLE, LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.switching import Switching
 from sk120stiff.robot import Robot
 
 REACHES = (0.02, 0.06, 0.15, 0.4)  # of the largest torque: after which a gear may start to slip

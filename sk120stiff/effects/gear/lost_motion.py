@@ -8,12 +8,13 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects.base import Switching, scale_of
+from sk120stiff.effects.base import scale_of
 from sk120stiff.effects.elongation import Elongation
 from sk120stiff.effects.gear.law import GearEffect, constant_in_torque, torques_told
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.options import Options
 from sk120stiff.effects.parameter import ParameterSpec
+from sk120stiff.effects.switching import Switching
 from sk120stiff.robot import Robot
 
 FLANKS = (0.02, 0.06, 0.15)  # of the largest torque: over which teeth may take hold

@@ -19,7 +19,7 @@ from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import Regression, regression_at
 from sk120stiff.explain.select.beam import beam_search
 from sk120stiff.explain.select.score import Scored, score_set
-from sk120stiff.explain.select.stepwise import laws_of, refit
+from sk120stiff.explain.select.stepwise import Selection, laws_of, refit
 from sk120stiff.identify import Fit
 from sk120stiff.model import Parameter
 
@@ -84,6 +84,60 @@ def _beyond(usual: Regression, model: Scored, effect: int) -> bool:
     solved = model.solved
     own = np.isin(solved.columns, usual.variants[effect][model.by_variant[effect]])
     return bool((np.abs(solved.values) > usual.believed(solved))[own].any())
+
+
+def softer_instead(found: Selection) -> list[str]:
+    """Names in whose place a soft foundation or tool would do as well, one sentence for each.
+
+    They are named all the same: what is customary goes before what is not. But a user knows what
+    hangs on the flange, and nothing in the readings does.
+    """
+    regression = found.regression
+    some = frozenset(e.id for e in found.candidates if any(s.customary for s in e.parameters))
+    named = [e for e in found.chosen if regression.candidates[e].id not in some]
+    tried = [
+        e
+        for e, each in enumerate(regression.candidates)
+        if each.id in some and e not in found.chosen
+    ]
+    if not named or not tried:
+        return []
+    wide = regression_at(
+        found.final,
+        found.candidates,
+        [effect.id for effect in found.base.model.effects],
+        alpha=regression.alpha,
+        prior=regression.prior,
+        soft=regression.soft | some,
+        near=regression.linearised,
+    )
+    told, sums, now = [], wide.sums(), found.scored.score
+    for name in named:
+        rest = [e for e in found.chosen if e != name]
+        instead = [(score_set(wide, sums, (*rest, e)), e) for e in tried]
+        best, soft = min(instead, key=lambda each: each[0].score)
+        if best.score < now + DECISIVE and _beyond(regression, best, soft):
+            does = "would explain far more" if best.score < now - DECISIVE else "would do as well"
+            told.append(_instead(wide, best, soft, regression.candidates[name].id, does))
+    return told
+
+
+def _instead(wide: Regression, best: Scored, soft: int, name: str, does: str) -> str:
+    """That a soft part would do in place of a name, by its softest value."""
+    variant = best.by_variant[soft]
+    law, columns = wide.laws[soft][variant], wide.variants[soft][variant]
+    values = dict(zip(best.solved.columns.tolist(), best.solved.values.tolist(), strict=True))
+    softest = max(  # one column may stand for several parameters that are alike
+        ((values.get(c, 0.0) * s.typical / (s.customary or np.inf), values.get(c, 0.0), s)
+         for c, s in zip(columns.tolist(), law.parameters, strict=False)),
+        key=lambda each: each[0],
+    )  # fmt: skip
+    _, value, spec = softest
+    return (
+        f"{law.id} {does} in place of {name}, far softer than is customary "
+        f"({spec.name} {spec.public(value * spec.typical):.2g} {spec.unit}): these readings do not "
+        f"tell what was put on from a part of the arm. '--exclude {name}' shows it."
+    )
 
 
 def softer_than_customary(final: Fit, soft: Collection[str]) -> list[str]:

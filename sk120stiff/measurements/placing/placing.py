@@ -272,15 +272,17 @@ def _refuse_slips(
             way = nearer(cloud.some(FEWER), way)
             stands = standing(cloud.some(FEWER), way, _gravity(cloud.robot, readings))
             way, written = stands.way, _as_written(readings)
+            or_else = (
+                f"; or else the positions look {MIRRORED}: then {1e3 * rms:.3g} mm are left"
+                if mirrored
+                else ""
+            )
             raise OtherConvention(
-                f"{told}. With {other} {1e3 * way.rms:.3g} mm are left",
+                f"{told}. With {other} {1e3 * way.rms:.3g} mm are left{or_else}",
                 where=where,
                 remedy="Check the controller's convention. If it is so, write into the YAML file: "
                 f"{written(way)}; where a joint has an expression there already, put that in its "
-                f"place on the right.{stands.beside(written)}"
-                + (
-                    f" Positions that are {MIRRORED}, leave {1e3 * rms:.3g} mm." if mirrored else ""
-                ),
+                f"place on the right.{stands.beside(written)}",
                 standing=stands,
             )
     if explains < least or (explains < BETTER * base and not what.startswith(ONE_COLUMN)):

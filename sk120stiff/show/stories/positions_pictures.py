@@ -49,8 +49,8 @@ def pictures_of_poses(answer: Explained) -> list[Block]:
 
 
 def arm_at_poses(answer: Explained, scene: str, link: str) -> list[Block]:
-    """The scene in its frame, with what is to be seen in it; none without its text."""
-    if not scene:
+    """The scene in its frame, with what is to be seen in it; none of angles alone."""
+    if not scene or not len(answer.final.problem.lengths):
         return []
     title = f"The arm at its {counted(len(answer.readings.masked().poses), 'pose')}"
     return [SceneFrame(scene, title, "Choose a pose; the arrows are its gap vectors.", link)]
