@@ -1,12 +1,15 @@
 """What a user stands an arm on, or puts on its flange, may be far softer than any drive."""
 
+import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.explain import Options
 from sk120stiff.explain.answer.next_step import next_step
+from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.options import candidates_for
-from sk120stiff.explain.select.brought import brought
+from sk120stiff.explain.select.brought import brought, softer_instead
+from sk120stiff.explain.select.stepwise import Selection, refit
 from tests.data_checks.readings import ARMS, loads_as_if
 from tests.explain.readings import answered, base_fit, hidden
 from tests.hidden.generator.causes_elastic import BaseRocking, JointTilt, ToolCompliance
@@ -64,3 +67,30 @@ def test_units_in_doubt_come_before_names(factor: float) -> None:
     assert (" If they are right: " in next_step(answer)) == (factor != 1.0)
     assert (answer.units is not None) == (factor != 1.0)
     assert answer.document().units == answer.units
+
+
+@pytest.mark.parametrize(
+    ("cause", "told"),
+    [
+        (ToolCompliance("tool0", {"tx": 1 / 3e5, "ty": 1 / 4e5}), True),
+        (JointTilt("joint_2_l", {"first": 4e-7, "second": 3e-7}), False),
+    ],
+)
+def test_a_soft_part_is_told_where_another_name_stands_for_it(cause: Cause, told: bool) -> None:
+    """A tilt stands for a tool on rubber, and for itself."""
+    readings = hidden(cause, poses=12)
+    base = base_fit(readings)
+    options = Options(only=("tool_compliance", "joint_tilt"))
+    candidates = candidates_for(base.model, readings, options)
+    tilt = next(each for each in candidates if each.id == "joint_tilt:joint_2_l")
+    final = refit(base, [tilt])
+    ids = [effect.id for effect in base.model.effects]
+    regression = regression_at(final, candidates, ids, alpha=0.01)
+    place = [each.id for each in regression.candidates].index(tilt.id)
+    nobody = np.zeros(0, dtype=np.intp)
+    named = Selection(base, final, regression, (place,), nobody, candidates, 0.0, 0.0)
+    said = softer_instead(named)
+    assert bool(said) == told
+    if told:
+        assert said[0].startswith("tool_compliance:tool0 would explain far more in place of joint")
+        assert "stiffness_shift" in said[0] and f"--exclude {tilt.id}" in said[0]
