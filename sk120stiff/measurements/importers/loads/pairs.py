@@ -71,7 +71,7 @@ def unfolded(sheet: Sheet) -> Sheet:
     left = tuple(
         f"column {c.header}: one for two readings" for c in sheet.columns if c.meaning in _OF_ONE
     )
-    return replace(
+    whole = replace(
         sheet,
         columns=tuple(columns),
         lines=_woven(sheet.lines, sheet.lines),
@@ -85,6 +85,19 @@ def unfolded(sheet: Sheet) -> Sheet:
         ),
         zero=_ZERO[own],
     )
+    return whole if own else whole.rows(_once(whole))
+
+
+def _once(whole: Sheet) -> list[int]:
+    """Rows of readings, those without load that come again left out: one serves several loads."""
+    seen: set[tuple[str, ...]] = set()
+    kept = []
+    for row in range(len(whole.lines)):
+        cells = tuple(column.cells[row] for column in whole.columns)
+        if row % 2 or cells not in seen:
+            kept.append(row)
+        seen.add(cells)
+    return kept
 
 
 def _refuse_no_load(sheet: Sheet) -> None:

@@ -9,6 +9,9 @@ import yaml
 from sk120stiff import load_robot
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers import Imported, Told, import_readings
+from sk120stiff.measurements.importers.campaign.before_load import with_before
+from sk120stiff.measurements.importers.loads.pairs import unfolded
+from tests.measurements.importers.reading import sheet_of
 from tests.measurements.importers.tracked import TURN, Campaign, campaign, ur5
 
 SEEN = campaign(14)
@@ -168,3 +171,16 @@ def test_loads_by_size_and_direction_in_their_own_file(tmp_path: Path) -> None:
     odd = np.array([SEEN.names.index(p) % 2 for p in found.readings.pose], dtype=bool)
     np.testing.assert_allclose(found.readings.wrench[odd, 0], 200.0)
     np.testing.assert_allclose(found.readings.wrench[~odd, 2], -200.0)
+
+
+def test_a_reading_without_load_serves_several_loads_once(tmp_path: Path) -> None:
+    """It was written once for every load, and then told as a row that was pasted twice."""
+    loaded = "name,payload[kg],x[mm],y[mm],z[mm]\n" + "".join(
+        f"{name},{mass},{x},2,{3 - mass}\n" for name, x in (("A", 1), ("B", 4)) for mass in (1, 2)
+    )
+    before = sheet_of(tmp_path, "name,x[mm],y[mm],z[mm]\nA,1,2,3\nB,4,2,3\n")
+    (tmp_path / "loaded").mkdir()
+    whole = unfolded(with_before(sheet_of(tmp_path / "loaded", loaded), before, Told()))
+    payload, z = whole.get("payload"), whole.get("z")
+    assert payload is not None and payload.cells == ("0", "1", "2", "0", "1", "2")
+    assert z is not None and z.cells == ("3", "2", "1", "3", "2", "1")
