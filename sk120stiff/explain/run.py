@@ -183,6 +183,7 @@ def explain_displacements(
         remainder = replace(remainder, shows=(*remainder.shows, *left.of_time))
     turned = axes_of_joint_angles(base)
     beyond = implausible(found) if remainder.significant else None
+    softer = softer_instead(found) if beyond is None else {}
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
     written = beside_parts(
@@ -212,11 +213,12 @@ def explain_displacements(
         ),
         notes=(
             *softer_than_customary(final, found.regression.soft),
-            *([] if beyond is not None else softer_instead(found)),
+            *softer.values(),
             *forms(final, effects),
         ),
         units=units,
         beyond=None if beyond is None else beyond.id,
+        softer=tuple(softer),
         limits=options.limits,
         suspects=suspects,
         guess=guess,

@@ -92,5 +92,6 @@ def test_a_soft_part_is_told_where_another_name_stands_for_it(cause: Cause, told
     said = softer_instead(named)
     assert bool(said) == told
     if told:
-        assert said[0].startswith("tool_compliance:tool0 would explain far more in place of joint")
-        assert "stiffness_shift" in said[0] and f"--exclude {tilt.id}" in said[0]
+        sentence = said[tilt.id]
+        assert sentence.startswith("tool_compliance:tool0 would explain far more in place of joint")
+        assert "stiffness_shift" in sentence and f"--exclude {tilt.id}" in sentence

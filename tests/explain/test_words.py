@@ -53,6 +53,7 @@ class Answered:
     beyond: str | None = None
     borne_out: Any = None
     yardstick: Any = field(default_factory=lambda: SimpleNamespace(sigma=1e-5))
+    softer: tuple[str, ...] = ()
     slips: dict[int, str] = field(default_factory=dict)
     far_off: tuple[tuple[str, float], ...] = ()
 
@@ -223,6 +224,15 @@ def test_an_instrument_is_no_part_of_an_arm_to_be_mended(
     told = next_step(Answered(findings=named, budget=(Share(own, 1e-5, 1e-6),)))
     assert advice in told
     assert ("no fault of the arm" in told) == ("mended" not in advice)
+
+
+def test_a_part_that_may_stand_for_it_goes_before_the_arm() -> None:
+    effect = SimpleNamespace(id="joint_tilt:j7", bends_a_spring=False, random_effects=False)
+    named = (SimpleNamespace(effect=effect, alternatives=()),)
+    budget = (Share(effect.id, 1e-5, 1e-6),)
+    told = next_step(Answered(findings=named, budget=budget, softer=(effect.id,)))
+    assert "make sure that what was put on is not as soft as told" in told
+    assert "look there first" not in told
 
 
 def test_the_first_line_says_that_part_has_no_name() -> None:

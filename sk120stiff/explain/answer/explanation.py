@@ -50,6 +50,7 @@ class Explanation:
         notes: What else is told of the named causes, in sentences.
         units: Why units of force or displacement are in doubt, a sentence; None: they are not.
         beyond: What would explain by far the most, were its size to be believed; None: nothing.
+        softer: Names in whose place a part that the user put on would do, were it soft enough.
         limits: How the user limited the search, in sentences; empty if not at all.
         where: Plain statements on where the gap of the base model lives.
         suspects: For verdict ``outside``: what comes nearest.
@@ -89,6 +90,7 @@ class Explanation:
     notes: tuple[str, ...] = ()
     units: str | None = None
     beyond: str | None = None
+    softer: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()
     where: tuple[str, ...] = ()
     suspects: tuple[Contender, ...] = ()

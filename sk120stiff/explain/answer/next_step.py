@@ -262,6 +262,8 @@ def _largest(answer: Explanation) -> list[str]:
     advice = CHECKED.get(places.pop()) if len(places) == 1 else None
     if len(names) == 1 and named[first.name].effect.bends_a_spring:
         advice = BY_NATURE
+    if first.name in answer.softer:
+        advice = "before you look there, make sure that what was put on is not as soft as told"
     return [
         f"At the measured loads {' or '.join(names)} brings the most of {most}, "
         f"{microns(first.rms)}{error} rms per axis: "

@@ -86,8 +86,8 @@ def _beyond(usual: Regression, model: Scored, effect: int) -> bool:
     return bool((np.abs(solved.values) > usual.believed(solved))[own].any())
 
 
-def softer_instead(found: Selection) -> list[str]:
-    """Names in whose place a soft foundation or tool would do as well, one sentence for each.
+def softer_instead(found: Selection) -> dict[str, str]:
+    """Names in whose place a soft foundation or tool would do as well → that, in a sentence.
 
     They are named all the same: what is customary goes before what is not. But a user knows what
     hangs on the flange, and nothing in the readings does.
@@ -101,7 +101,7 @@ def softer_instead(found: Selection) -> list[str]:
         if each.id in some and e not in found.chosen
     ]
     if not named or not tried:
-        return []
+        return {}
     wide = regression_at(
         found.final,
         found.candidates,
@@ -111,14 +111,16 @@ def softer_instead(found: Selection) -> list[str]:
         soft=regression.soft | some,
         near=regression.linearised,
     )
-    told, sums, now = [], wide.sums(), found.scored.score
+    told: dict[str, str] = {}
+    sums, now = wide.sums(), found.scored.score
     for name in named:
         rest = [e for e in found.chosen if e != name]
         instead = [(score_set(wide, sums, (*rest, e)), e) for e in tried]
         best, soft = min(instead, key=lambda each: each[0].score)
         if best.score < now + DECISIVE and _beyond(regression, best, soft):
             does = "would explain far more" if best.score < now - DECISIVE else "would do as well"
-            told.append(_instead(wide, best, soft, regression.candidates[name].id, does))
+            of = regression.candidates[name].id
+            told[of] = _instead(wide, best, soft, of, does)
     return told
 
 
