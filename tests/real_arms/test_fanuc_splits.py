@@ -22,6 +22,7 @@ if fanuc.FOLDER.is_dir():
         pair = {"joint_tilt:joint_3", "link_bending:link_3"}
         told = [{each.effect.id, *each.alternatives} for each in split.answer.findings]
         assert any(pair <= names for names in told), told
+        assert set().union(*told) <= pair | {"joint_tilt:joint_2", "force_point:sensor"}
         assert all(np.isfinite(p.value) for p in split.answer.final.parameters[:3])
         assert split.answer.verdict == "ambiguous"
         assert split.answer.remainder.significant

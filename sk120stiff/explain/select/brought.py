@@ -137,8 +137,8 @@ def _instead(wide: Regression, best: Scored, soft: int, name: str, does: str) ->
     _, value, spec = softest
     return (
         f"{law.id} {does} in place of {name}, far softer than is customary "
-        f"({spec.name} {spec.public(value * spec.typical):.2g} {spec.unit}): these readings do not "
-        f"tell what was put on from a part of the arm. '--exclude {name}' shows it."
+        f"({spec.name} {spec.public(value * spec.typical):.2g} {spec.unit}): make sure that what "
+        f"was put on, or stands below, is not as soft. '--exclude {name}' shows it."
     )
 
 

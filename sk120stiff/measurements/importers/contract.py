@@ -75,6 +75,16 @@ class Source:
             )
         return text_grid(self.path, self.data)
 
+    @property
+    def unnamed_grid(self) -> Grid | None:
+        """Rows of cells whose columns nobody has named; None of a folder, or of what is no text."""
+        if self.columns is not None or self.path.is_dir():
+            return None
+        try:
+            return self.grid
+        except InputError:  # its importer tells
+            return None
+
 
 class Guess(NamedTuple):
     """How sure an importer is that a file is its own (0 to 1: beyond doubt), and why."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,12 +16,14 @@ from sk120stiff.measurements import Measurements
 from sk120stiff.model.predicted import predict_channels
 
 AROUND = np.linspace(-np.pi, np.pi, 72, endpoint=False)  # rad, by which a joint is tried first
-FINER = 12  # times the steps between are made a fifth
+FINER = 7  # times the steps between are made a fifth
 FITS = 6.0  # times the gap of all others, rms, that it must come down to
+KEPT = 4  # answers: terminal, report and verdict.json say the same of one calibration
 ALONE = 5.0  # times more that every other joint must leave
 
 
-def mistyped_joints(found: Calibration, readings: Measurements, most: int) -> list[str]:
+@lru_cache(maxsize=KEPT)
+def mistyped_joints(found: Calibration, readings: Measurements, most: int) -> tuple[str, ...]:
     """Joints that would explain whole poses that were set aside, a sentence for each.
 
     Args:
@@ -33,12 +36,12 @@ def mistyped_joints(found: Calibration, readings: Measurements, most: int) -> li
     own = {pose: np.flatnonzero((label == pose) & readings.use) for pose in label[rows].tolist()}
     whole = [(pose, each) for pose, each in own.items() if np.isin(each, rows).all()][:most]
     if not whole:
-        return []
+        return ()
     placed = placed_anew(found.model, readings)
     if placed is not None and placed.parts:  # the stations that the model knows
         readings = placed.readings
     told = ((pose, _of_pose(found, readings, each)) for pose, each in whole)
-    return [f"Pose {pose}: {what}." for pose, what in told if what]
+    return tuple(f"Pose {pose}: {what}." for pose, what in told if what)
 
 
 def _of_pose(found: Calibration, readings: Measurements, rows: Index) -> str | None:
@@ -58,7 +61,7 @@ def _of_pose(found: Calibration, readings: Measurements, rows: Index) -> str | N
         return None
     name, stands = readings.joint_names[joint], float(readings.joints[chosen[0], joint])
     written, meant = (units.from_si(x, "deg", "angle") for x in (stands, stands + by))
-    return f"{name} = {float(meant):.2f} deg would explain it, where {float(written):.6g} stands"
+    return f"{name} = {float(meant):.2f} deg would explain it, where it is {float(written):.6g} deg"
 
 
 def _best(found: Calibration, readings: Measurements, rows: Index, k: int) -> tuple[float, float]:

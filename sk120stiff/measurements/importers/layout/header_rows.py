@@ -42,11 +42,8 @@ def in_one_row(source: Source) -> Source:
     Raises:
         InputError: Several markers without and with load side by side.
     """
-    if source.columns is not None or source.path.is_dir():
-        return source
-    try:
-        grid = source.grid
-    except InputError:  # no text: its importer tells
+    grid = source.unnamed_grid
+    if grid is None:
         return source
     for k in range(1, min(SEARCHED, len(grid.rows))):
         if _worded(grid.rows[k - 1]) and _worded(grid.rows[k]):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 from collections import Counter
 
-from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers.columns.words import as_measured, meaning_of, unit_of_header
 from sk120stiff.measurements.importers.contract import Source
 from sk120stiff.measurements.importers.grid import is_number
@@ -23,11 +22,8 @@ Row = tuple[str, ...]
 
 def with_whole_headers(source: Source) -> Source:
     """The source with such words joined; as it is where every row has as many cells."""
-    if source.columns is not None or source.path.is_dir():
-        return source
-    try:
-        grid = source.grid
-    except InputError:  # no text: its importer tells
+    grid = source.unnamed_grid
+    if grid is None:
         return source
     first = next((k for k, row in enumerate(grid.rows[:SEARCHED]) if numeric(row)), 0)
     if not first:
