@@ -132,6 +132,13 @@ def test_many_repairs_make_few_warnings() -> None:
     assert len(told) == 1 and "39 more of this kind; see check" in str(told[0].message)
 
 
+def test_kinds_beyond_the_most_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sk120stiff.robot.loading._MOST_WARNINGS", 0)
+    with pytest.warns(ToolkitWarning) as told:
+        load_robot(arm(*["0 0 2"] * 40))
+    assert len(told) == 1 and "40 more findings; see check" in str(told[0].message)
+
+
 def test_a_ball_joint_must_be_locked_by_word(tmp_path: Path) -> None:
     text = arm("0 0 1", "0 1 0").replace('name="j2" type="revolute"', 'name="j2" type="spherical"')
     with pytest.raises(InputError, match="3 degrees of freedom"):

@@ -10,11 +10,11 @@ import os
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from sk120stiff.errors import InputError
 from sk120stiff.files.json_text import SCHEMA
-from sk120stiff.files.schema import Strict, validated
+from sk120stiff.files.schema import validated
 
 VERDICT, BEST_GUESS, NEXT_POSES = "verdict.json", "best_guess.yaml", "next_poses.csv"
 Outcome = Literal["none", "named", "ambiguous", "outside"]
@@ -23,7 +23,13 @@ Number = float | None  # null: it does not exist, is infinite or is not known
 Evidence = dict[str, bool | int | float | str | None]
 
 
-class ParameterEntry(Strict):
+class Entry(BaseModel):
+    """Keys of the document; those of later versions are left aside, as docs/STABILITY.md says."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+
+class ParameterEntry(Entry):
     """A parameter of the final model in public units."""
 
     name: str
@@ -40,7 +46,7 @@ class ParameterEntry(Strict):
     plausible: bool | None = None
 
 
-class SizeEntry(Strict):
+class SizeEntry(Entry):
     """What the parameters of a gear's law amount to together."""
 
     name: str
@@ -50,7 +56,7 @@ class SizeEntry(Strict):
     sentence: str
 
 
-class EffectEntry(Strict):
+class EffectEntry(Entry):
     """A named effect."""
 
     name: str
@@ -67,7 +73,7 @@ class EffectEntry(Strict):
     evidence: Evidence
 
 
-class StepEntry(Strict):
+class StepEntry(Entry):
     """The gap with one effect more in the model."""
 
     model: str
@@ -76,7 +82,7 @@ class StepEntry(Strict):
     heldout_mean_distance: Number = None
 
 
-class BorneOutEntry(Strict):
+class BorneOutEntry(Entry):
     """What readings of a hold-out file show of what was named."""
 
     file: str
@@ -88,19 +94,19 @@ class BorneOutEntry(Strict):
     contradicted: bool
 
 
-class GapEntry(Strict):
+class GapEntry(Entry):
     """The gap, step by step."""
 
     unit: Literal["um", "urad"]
     noise_floor: Number
     p: Number
     rms_of_all: Number = None
-    set_aside: int
+    set_aside: int = 0
     steps: list[StepEntry]
     borne_out: BorneOutEntry | None
 
 
-class GoesWithEntry(Strict):
+class GoesWithEntry(Entry):
     """What the remainder goes with."""
 
     name: str
@@ -109,7 +115,7 @@ class GoesWithEntry(Strict):
     foretold_without_um: Number
 
 
-class RemainderEntry(Strict):
+class RemainderEntry(Entry):
     """What is left beyond the noise."""
 
     rms_um: Number
@@ -122,7 +128,7 @@ class RemainderEntry(Strict):
     goes_with: GoesWithEntry | None = None
 
 
-class OddsEntry(Strict):
+class OddsEntry(Entry):
     """One probability, and of what it is one."""
 
     name: str
@@ -131,16 +137,16 @@ class OddsEntry(Strict):
     place: str | None
 
 
-class ShareEntry(Strict):
+class ShareEntry(Entry):
     """What one effect, or all at one joint, moves the point by."""
 
     name: str
-    members: list[str]
+    members: list[str] = Field(default_factory=list)
     rms_um: Number
     std_um: Number
 
 
-class TaskEntry(Strict):
+class TaskEntry(Entry):
     """The budget of a task."""
 
     path: str
@@ -149,14 +155,14 @@ class TaskEntry(Strict):
     joints: list[ShareEntry]
 
 
-class SuspectEntry(Strict):
+class SuspectEntry(Entry):
     """What came nearest where nothing is confirmed."""
 
     name: str
     heldout_gain_um: Number
 
 
-class RowEntry(Strict):
+class RowEntry(Entry):
     """A reading that was set aside, by pose and line of the file."""
 
     pose: str
@@ -164,7 +170,7 @@ class RowEntry(Strict):
     slip: str | None = None
 
 
-class NoiseEntry(Strict):
+class NoiseEntry(Entry):
     """The noise that the answer was judged by."""
 
     model: str
@@ -177,7 +183,7 @@ class NoiseEntry(Strict):
     set_aside: list[RowEntry]
 
 
-class AdequacyEntry(Strict):
+class AdequacyEntry(Entry):
     """Is anything left over?"""
 
     probability: Number
@@ -187,7 +193,7 @@ class AdequacyEntry(Strict):
     understated: Number
 
 
-class DetectableEntry(Strict):
+class DetectableEntry(Entry):
     """The smallest size of a parameter that would have been named."""
 
     name: str
@@ -195,7 +201,7 @@ class DetectableEntry(Strict):
     unit: str
 
 
-class PairEntry(Strict):
+class PairEntry(Entry):
     """Two names that the proposed readings tell apart."""
 
     name: str
@@ -204,14 +210,14 @@ class PairEntry(Strict):
     settled: bool
 
 
-class FamilyEntry(Strict):
+class FamilyEntry(Entry):
     """What a family of causes takes off the gap beside the others."""
 
     name: str
     share_um: Number
 
 
-class HoldoutEntry(Strict):
+class HoldoutEntry(Entry):
     """The gap at positions kept out of everything: lengths in µm, or angles in µrad."""
 
     rms_um: Number = None
@@ -225,7 +231,7 @@ class HoldoutEntry(Strict):
     placed_anew: str | None
 
 
-class Verdict(Strict):
+class Verdict(Entry):
     """What `explain` found, as callers rely on it.
 
     Examples:
@@ -266,7 +272,7 @@ class Verdict(Strict):
     said: list[str] = Field(default_factory=list)
     not_named: list[str]
     known_together: list[str] = Field(default_factory=list)
-    limits: list[str]
+    limits: list[str] = Field(default_factory=list)
     noise: NoiseEntry
     adequacy: AdequacyEntry | None = None
     not_observable: list[str]
