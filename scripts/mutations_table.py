@@ -273,7 +273,11 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/judge/rigid_gears.py", *tests("explain", "rigid_gears"),
-        rigid_gears_for_nothing=("model.score + UNLIKELY * rigid", "model.score"),
+        rigid_gears_for_nothing=(
+            "total = model.score + float(prices_of_drives(regression, model).sum())",
+            "total = model.score",
+        ),
+        drives_out_of_line_for_nothing=("(np.log(tried / usual) / SPREAD) ** 2", "0.0 * tried"),
     ),
     *of(
         "explain/localise/suspect.py", *tests("explain", "localise"),

@@ -1,6 +1,8 @@
 """Names beside what every real arm has beyond its model, and how large that is."""
 
+import runpy
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from tests.explain.readings import SIGMA, answered, base_fit, hidden
 from tests.hidden.generator.causes_elastic import JointTilt
 from tests.real_arms import fanuc
 
+SPLITS = Path(__file__).parents[2] / "scripts" / "18_fanuc_splits.py"
 KINDS = Options(only=("joint_tilt", "link_bending", "base_rocking", "tool_compliance"))
 
 
@@ -111,7 +114,11 @@ if fanuc.FOLDER.is_dir():
         assert {first.effect.id, *first.alternatives} == pair
         fallen = {said.partition(" ")[0] for said in answer.unnamed}  # none that stands in the set
         assert fallen and not fallen & pair
-        assert all(np.isfinite(p.value) for p in answer.final.parameters[:3])
+        springs = [p.value for p in answer.final.parameters if p.effect.joint_spring]
+        assert np.isfinite(springs).all()
+        assert max(springs[:3]) < 5e6  # bending of link 3 alone leaves joint 3 17e6
+        one_left_out = runpy.run_path(str(SPLITS))["one_left_out"]
+        assert np.sqrt(np.mean(one_left_out(answer, data) ** 2)) < 0.31e-3
 
 
 @pytest.mark.parametrize(("poses", "loads", "seed"), [(5, 5, 1), (4, 6, 3), (20, 5, 5)])

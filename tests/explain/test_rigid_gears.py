@@ -8,10 +8,18 @@ import pytest
 
 from sk120stiff import joint_spring_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
+from sk120stiff.explain.candidates.sums import Solved, sums_of
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.confirm import UNTRIED
-from sk120stiff.explain.judge.rigid_gears import UNLIKELY, _total, held_rigid, without_rigid_gears
+from sk120stiff.explain.judge.rigid_gears import (
+    OUT_OF_LINE,
+    UNLIKELY,
+    _headed_by,
+    held_rigid,
+    prices_of_drives,
+    without_rigid_gears,
+)
 from sk120stiff.explain.select.stepwise import Selection, select, with_effects
 from sk120stiff.measurements import Measurements, NoiseModel, NoiseStatement
 from tests.corpus.robots import example
@@ -60,18 +68,50 @@ def test_a_law_that_leaves_all_springs_stays(tmp_path):
     assert without_rigid_gears(found, named(found)) == (found, named(found))
 
 
-def test_every_rigid_gear_has_its_price():
-    """Columns 0 and 1 are springs, 2 is a zero offset, 3 the effect's."""
-    regression = SimpleNamespace(base=np.array([0, 1, 2]), lower=np.array([0, 0, -np.inf, 0]))
+def priced(compliances, errors, *, held=()) -> float:
+    """Price of springs that readings tell one by one, each with its own standard error."""
+    errors = np.array(errors)
+    X, y = np.diag(1.0 / errors), np.array(compliances) / errors
+    moving = np.array([k for k in range(len(errors)) if k not in held])
+    model = SimpleNamespace(solved=Solved(moving, np.array(compliances)[moving], 0.0))
+    regression = SimpleNamespace(
+        springs=np.arange(len(errors)), X=X, plausible=np.full(len(errors), 1e9),
+        sigma_known=True, sums=lambda: sums_of(X, y),
+    )  # fmt: skip
+    return float(prices_of_drives(regression, model).max())
 
-    def model(*columns: int, plausible: bool = True) -> SimpleNamespace:
-        solved = SimpleNamespace(columns=np.array(columns))
-        return SimpleNamespace(score=7.0, solved=solved, plausible=plausible)
 
-    assert _total(regression, model(0, 1, 3)) == 7.0
-    assert _total(regression, model(3, 0)) == 7.0 + UNLIKELY
-    assert _total(regression, model(2, 3)) == 7.0 + 2.0 * UNLIKELY
-    assert _total(regression, model(0, 1, 2, 3, plausible=False)) == np.inf
+def test_drives_in_line_cost_little():
+    """Springs of a KUKA KR 240 (Dumas et al. 2011), joint by joint, well measured."""
+    springs = 1.0 / np.array([1.41, 0.40, 0.94, 0.36, 0.37, 0.38])
+    assert priced(springs, 0.02 * springs) < OUT_OF_LINE
+
+
+def test_a_drive_out_of_line_has_its_price():
+    """Twenty times stiffer than the others: ln(20)² where the readings are sure of it."""
+    assert priced([0.05, 1.0, 1.0, 1.0], [1e-4] * 4) == pytest.approx(np.log(20.0) ** 2, rel=0.02)
+    assert priced([0.05, 1.0, 1.0, 1.0], [0.3, *[1e-4] * 3]) < 3.0
+
+
+def test_a_rigid_drive_costs_as_much_as_readings_are_against_its_yielding():
+    assert priced([-0.3, 1.0, 1.0], [0.1] * 3, held=(0,)) > OUT_OF_LINE
+    assert priced([-0.3, 1.0, 1.0], [1.0] * 3, held=(0,)) < 1.5
+    assert priced([0.0, 1.0, 1.0], [50.0, 0.1, 0.1], held=(0,)) < 0.01
+
+
+def test_a_rival_that_goes_first_keeps_the_set_and_its_evidence():
+    robot = load_robot("motoman_sk120")
+    tilt, beam = effect(robot, "joint_tilt", "joint_2_l"), effect(robot, "link_bending", "link_2_l")
+    odds = {beam.id: 0.9, tilt.id: 0.08}
+    told = Evidence(20.0, 30.0, "base_rocking:base_link", 9.0, UNTRIED, odds, {tilt.id: 4.8})
+    before = Finding(beam, (tilt.id,), (), told)
+    after = _headed_by(before, tilt)
+    assert (after.effect, after.alternatives) == (tilt, (beam.id,))
+    assert after.probability == pytest.approx(before.probability)
+    assert after.evidence.rivals == {beam.id: -4.8}
+    assert after.evidence.score_gain == pytest.approx(15.2)
+    assert after.gain == pytest.approx(before.gain, abs=0.1)  # odds and scores say the same
+    assert _headed_by(before, replace(beam, taper=0.6)).effect.taper == 0.6
 
 
 def test_a_tilt_about_the_next_joint_leaves_that_joint_its_spring():

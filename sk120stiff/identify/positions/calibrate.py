@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -200,18 +200,26 @@ def calibrate(
 
 
 def _fitted(
-    start: Model, readings: Measurements, wild: Mask, *, shared: bool = True
+    start: Model,
+    readings: Measurements,
+    wild: Mask,
+    *,
+    shared: bool = True,
+    near: Model | None = None,
 ) -> tuple[Fit, tuple[Frozen, ...], Mask]:
     """Fit, learn the noise, set wild rows aside, until nothing changes.
 
-    What is called wild in the end took no part in the fit.
+    What is called wild in the end took no part in the fit. What is frozen stays as it was stated:
+    a round that took the noise for smaller may have found it anywhere.
     """
-    sigma, common, turning, model = dict(START), 0.0, 1.0, start
+    sigma, common, turning = dict(START), 0.0, 1.0
+    model = start if near is None else with_values_of(start, near)
     for turn in range(1, ROUNDS + MORE_ROUNDS + 1):
         used = readings.select(np.flatnonzero(readings.use & ~wild))
         wide = _problem(model, used, sigma, common, turning)
         _refuse_too_few(wide)
         small, frozen = least_set(model, rigid_columns(wide, start), wide.span)
+        small = with_values_of(small, start, {each.name for each in frozen})
         problem = _problem(small, used, sigma, common, turning)
         _refuse_no_rest(problem)
         found = fitted(problem)
@@ -322,9 +330,9 @@ def _refuse_no_rest(problem: PoseProblem) -> None:
     )
 
 
-def with_values_of(model: Model, other: Model) -> Model:
-    """The model with the values that another one has for the same parameters."""
-    known = {p.name: p.internal for p in other.parameters}
+def with_values_of(model: Model, other: Model, names: Collection[str] | None = None) -> Model:
+    """The model with the values that another one has for the same parameters, or for these."""
+    known = {p.name: p.internal for p in other.parameters if names is None or p.name in names}
     return replace(
         model,
         parameters=tuple(
@@ -350,9 +358,7 @@ def refined(
     shared = bool(effects) or any(isinstance(effect, Elastic) for effect in model.effects)
     for effect in effects:
         model = model + effect
-    if near is not None:
-        model = with_values_of(model, near)
-    found, frozen, wild = _fitted(model, readings, base.wild, shared=shared)
+    found, frozen, wild = _fitted(model, readings, base.wild, shared=shared, near=near)
     return Calibration.of(
         doubted(found, catalogue), placed=base.placed, frozen=frozen, still=base.still, wild=wild,
         waves=base.waves, notes=base.notes,
