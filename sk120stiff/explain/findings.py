@@ -12,6 +12,7 @@ from sk120stiff.effects import Effect
 from sk120stiff.model import Model, Share
 
 ENOUGH = 3.3  # standard deviations from which on readings settle which of two names it is
+CERTAIN = 300.0  # logarithm of odds from which on a number holds no larger ones
 NAMED = 0.95  # probability from which on a name stands alone
 
 
@@ -146,6 +147,32 @@ class Finding:
     def settled(self) -> bool:
         """One name, or one class of names, is sure enough; no further poses could tell more."""
         return not self.others and self.probability >= NAMED
+
+    def headed_by(self, effect: Effect) -> Finding:
+        """The same finding by another law of its name, or with one of its rivals before it."""
+        old, evidence = self.effect.id, self.evidence
+        if effect.id == old:
+            return replace(self, effect=effect)
+        behind = evidence.rivals.get(effect.id, 0.0)
+        rivals = {name: gap - behind for name, gap in evidence.rivals.items() if name != effect.id}
+        told = replace(
+            evidence,
+            score_gain=evidence.score_gain - behind,
+            runner_up_gap=evidence.runner_up_gap - behind,
+            rivals=rivals | {old: -behind},
+        )
+        others = tuple(name for name in self.alternatives if name != effect.id)
+        return replace(self, effect=effect, alternatives=(old, *others), evidence=told)
+
+    def beside(self, rival: str, gap: float) -> Finding:
+        """The same finding with one more name in its set, whose score is worse by `gap`."""
+        said = self.evidence
+        share = said.odds.get(self.effect.id, 1.0) * float(np.exp(min(-0.5 * gap, CERTAIN)))
+        whole = 1.0 + share - said.odds.get(rival, 0.0)
+        odds = {name: p / whole for name, p in {**said.odds, rival: share}.items()}
+        told = replace(said, odds=odds, rivals={**said.rivals, rival: gap})
+        names = tuple(dict.fromkeys([*self.alternatives, rival]))
+        return replace(self, alternatives=names, evidence=told)
 
     def doubted(self, impostor: float) -> Finding:
         """The same where, with this probability, it imitates part of what has no name."""

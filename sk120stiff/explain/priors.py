@@ -17,6 +17,7 @@ from sk120stiff.effects import CATALOGUE, Effect
 from sk120stiff.errors import InputError
 
 USUAL = 0.1  # of every effect without an entry
+FAR_SOFTER = 0.01  # of a foundation or tool far softer than is customary: on wheels, on rubber
 SOMETHING_ELSE = 0.1  # that a cause is at work which the catalogue lacks
 # Of a name beside such a cause: that it imitates a part of it all the same (`judge/imitation.py`).
 # The strongest name seldom does, a further one takes what that leaves. On draws of the hidden

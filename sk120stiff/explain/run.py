@@ -31,6 +31,7 @@ from sk120stiff.explain.judge.posterior import doubted, doubted_findings, one_mo
 from sk120stiff.explain.judge.remainder import Remainder, remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
+from sk120stiff.explain.judge.soft_parts import with_soft_parts
 from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file, gap_steps
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
@@ -43,7 +44,12 @@ from sk120stiff.explain.select.best_selection import (
     held_against,
     of_readings,
 )
-from sk120stiff.explain.select.brought import brought, softer_instead, softer_than_customary
+from sk120stiff.explain.select.brought import (
+    brought,
+    soft_rivals,
+    softer_instead,
+    softer_than_customary,
+)
 from sk120stiff.explain.select.form import beside_form, forms
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, select
@@ -152,6 +158,7 @@ def explain_displacements(
     tell("confirming on other poses", 0.3)
     found, named, account = judged_names(found, base, under, seed=options.seed)
     found, named = without_rigid_gears(found, named)
+    found, named = with_soft_parts(found, named, soft_rivals(found), seed=options.seed)
     found = replace(found, final=with_settled_sizes(found.final))
     base = of_readings(found.base.problem.measurements, base)
     left = adequacy_of(found, noise)
@@ -183,7 +190,7 @@ def explain_displacements(
         remainder = replace(remainder, shows=(*remainder.shows, *left.of_time))
     turned = axes_of_joint_angles(base)
     beyond = implausible(found) if remainder.significant else None
-    softer = softer_instead(found) if beyond is None else {}
+    softer = softer_instead(soft_rivals(found)) if beyond is None else {}
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
     written = beside_parts(

@@ -1,14 +1,21 @@
 """What a user stands an arm on, or puts on its flange, may be far softer than any drive."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pytest
 
 from sk120stiff import base_model, load_robot
+from sk120stiff.effects import effect
 from sk120stiff.explain import Options
 from sk120stiff.explain.answer.next_step import next_step
 from sk120stiff.explain.candidates.regression import regression_at
+from sk120stiff.explain.findings import Evidence, Finding
+from sk120stiff.explain.judge.attribution import Named
+from sk120stiff.explain.judge.confirm import UNTRIED
+from sk120stiff.explain.judge.soft_parts import with_soft_parts
 from sk120stiff.explain.options import candidates_for
-from sk120stiff.explain.select.brought import brought, softer_instead
+from sk120stiff.explain.select.brought import brought, soft_rivals, softer_instead
 from sk120stiff.explain.select.stepwise import Selection, refit
 from tests.data_checks.readings import ARMS, loads_as_if
 from tests.explain.readings import answered, base_fit, hidden
@@ -77,7 +84,7 @@ def test_units_in_doubt_come_before_names(factor: float) -> None:
     ],
 )
 def test_a_soft_part_is_told_where_another_name_stands_for_it(cause: Cause, told: bool) -> None:
-    """A tilt stands for a tool on rubber, and for itself."""
+    """A tilt stands for a tool on rubber, and for itself: what is customary is no reading."""
     readings = hidden(cause, poses=12)
     base = base_fit(readings)
     options = Options(only=("tool_compliance", "joint_tilt"))
@@ -89,9 +96,38 @@ def test_a_soft_part_is_told_where_another_name_stands_for_it(cause: Cause, told
     place = [each.id for each in regression.candidates].index(tilt.id)
     nobody = np.zeros(0, dtype=np.intp)
     named = Selection(base, final, regression, (place,), nobody, candidates, 0.0, 0.0)
-    said = softer_instead(named)
+    said = softer_instead(soft_rivals(named))
     assert bool(said) == told
     if told:
         sentence = said[tilt.id]
         assert sentence.startswith("tool_compliance:tool0 would explain far more in place of joint")
         assert "stiffness_shift" in sentence and f"--exclude {tilt.id}" in sentence
+    alone = Evidence(99.0, 99.0, None, np.inf, UNTRIED, {tilt.id: 0.999}, {})
+    before = Named((Finding(tilt, (), (), alone),))
+    found, after = with_soft_parts(named, before, soft_rivals(named), seed=0)
+    if not told:
+        assert (found, after) == (named, before)
+        return
+    (finding,) = after.findings
+    assert finding.effect.id == "tool_compliance:tool0" and finding.effect in found.effects
+    assert finding.probability > 0.95 and finding.evidence.confirmation.holds
+    assert finding.evidence.runner_up == tilt.id and not finding.alternatives
+    size = found.final.model.parameter("tool_compliance:tool0.stiffness_shift_x")
+    assert size.value == pytest.approx(3e5, rel=0.05)
+
+
+def test_a_soft_part_that_would_do_as_well_is_in_the_set() -> None:
+    robot = load_robot("motoman_sk120")
+    tilt = effect(robot, "joint_tilt", "joint_2_l")
+    odds = {tilt.id: 0.95, "base_rocking:base_link": 0.04}
+    said = Evidence(99.0, 99.0, None, np.inf, UNTRIED, odds, {"base_rocking:base_link": 6.3})
+    wider = Finding(tilt, (), (), said).beside("tool_compliance:tool0", 2.0)
+    assert wider.alternatives == ("tool_compliance:tool0",)
+    shares = wider.evidence.odds
+    assert shares["tool_compliance:tool0"] / shares[tilt.id] == pytest.approx(np.exp(-1.0))
+    assert sum(shares.values()) == pytest.approx((0.99 + 0.95 * np.exp(-1.0)) / wider_whole(shares))
+
+
+def wider_whole(shares: Mapping[str, float]) -> float:
+    """What all shares were divided by."""
+    return 0.04 / shares["base_rocking:base_link"]

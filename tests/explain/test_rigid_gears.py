@@ -15,7 +15,6 @@ from sk120stiff.explain.judge.confirm import UNTRIED
 from sk120stiff.explain.judge.rigid_gears import (
     OUT_OF_LINE,
     UNLIKELY,
-    _headed_by,
     held_rigid,
     prices_of_drives,
     without_rigid_gears,
@@ -105,13 +104,13 @@ def test_a_rival_that_goes_first_keeps_the_set_and_its_evidence():
     odds = {beam.id: 0.9, tilt.id: 0.08}
     told = Evidence(20.0, 30.0, "base_rocking:base_link", 9.0, UNTRIED, odds, {tilt.id: 4.8})
     before = Finding(beam, (tilt.id,), (), told)
-    after = _headed_by(before, tilt)
+    after = before.headed_by(tilt)
     assert (after.effect, after.alternatives) == (tilt, (beam.id,))
     assert after.probability == pytest.approx(before.probability)
     assert after.evidence.rivals == {beam.id: -4.8}
     assert after.evidence.score_gain == pytest.approx(15.2)
     assert after.gain == pytest.approx(before.gain, abs=0.1)  # odds and scores say the same
-    assert _headed_by(before, replace(beam, taper=0.6)).effect.taper == 0.6
+    assert before.headed_by(replace(beam, taper=0.6)).effect.taper == 0.6
 
 
 def test_a_tilt_about_the_next_joint_leaves_that_joint_its_spring():

@@ -20,10 +20,8 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.arrays import Array
-from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.regression import Regression
-from sk120stiff.explain.findings import Finding
 from sk120stiff.explain.judge.attribution import Named, unit
 from sk120stiff.explain.judge.posterior import LISTED
 from sk120stiff.explain.select.score import Scored, score_set
@@ -67,7 +65,7 @@ def without_rigid_gears(found: Selection, named: Named) -> tuple[Selection, Name
             again = score_set(other.regression, other.regression.sums(), other.chosen, only=())
             if prices_of_drives(other.regression, again).sum() < before:
                 findings = list(named.findings)
-                findings[place] = _headed_by(findings[place], head)
+                findings[place] = findings[place].headed_by(head)
                 return without_rigid_gears(other, replace(named, findings=tuple(findings)))
     held = _with_one_held(found.final, named)
     return (found if held is found.final else replace(found, final=held)), named
@@ -136,23 +134,6 @@ def _others(found: Selection, named: Named, now: Scored) -> list[tuple[float, Sc
                 total = model.score + float(prices_of_drives(regression, model).sum())
                 out.append((total if model.plausible else np.inf, model, number, e))
     return out
-
-
-def _headed_by(finding: Finding, head: Effect) -> Finding:
-    """The same finding by another law of its name, or with one of its rivals before it."""
-    old, evidence = finding.effect.id, finding.evidence
-    if head.id == old:
-        return replace(finding, effect=head)
-    behind = evidence.rivals.get(head.id, 0.0)
-    rivals = {name: gap - behind for name, gap in evidence.rivals.items() if name != head.id}
-    told = replace(
-        evidence,
-        score_gain=evidence.score_gain - behind,
-        runner_up_gap=evidence.runner_up_gap - behind,
-        rivals=rivals | {old: -behind},
-    )
-    others = tuple(name for name in finding.alternatives if name != head.id)
-    return replace(finding, effect=head, alternatives=(old, *others), evidence=told)
 
 
 def _with_one_held(fit: Fit, named: Named) -> Fit:

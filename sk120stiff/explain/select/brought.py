@@ -9,6 +9,7 @@ lies beyond, and without that by far more is left, or it takes more causes to le
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -25,6 +26,7 @@ from sk120stiff.model import Parameter
 
 BY_FAR = 2.0  # times the squares that are left, within what is customary
 DECISIVE = 10.0  # difference of scores (BIC: Kass & Raftery 1995) that it takes besides
+KNOWN = 2.0  # standard errors from which on a size is told for being out of line
 NARROW = 4  # models kept at each size of the search
 MOST = 3  # effects of a model: the soft part, and what is seen beside it
 
@@ -86,12 +88,24 @@ def _beyond(usual: Regression, model: Scored, effect: int) -> bool:
     return bool((np.abs(solved.values) > usual.believed(solved))[own].any())
 
 
-def softer_instead(found: Selection) -> dict[str, str]:
-    """Names in whose place a soft foundation or tool would do as well → that, in a sentence.
+@dataclass(frozen=True)
+class SoftRivals:
+    """Soft foundations or tools that would do in the place of names.
 
-    They are named all the same: what is customary goes before what is not. But a user knows what
-    hangs on the flange, and nothing in the readings does.
+    Attributes:
+        regression: The readings, with all sizes of such parts believed.
+        best: Place of a name among the candidates → the model with the soft part instead, and its
+            place.
+        named: Score of the model with the names.
     """
+
+    regression: Regression
+    best: Mapping[int, tuple[Scored, int]]
+    named: float
+
+
+def soft_rivals(found: Selection) -> SoftRivals | None:
+    """What would do as well as a name, were it far softer than is customary; None: nothing."""
     regression = found.regression
     some = frozenset(e.id for e in found.candidates if any(s.customary for s in e.parameters))
     named = [e for e in found.chosen if regression.candidates[e].id not in some]
@@ -101,7 +115,7 @@ def softer_instead(found: Selection) -> dict[str, str]:
         if each.id in some and e not in found.chosen
     ]
     if not named or not tried:
-        return {}
+        return None
     wide = regression_at(
         found.final,
         found.candidates,
@@ -111,16 +125,34 @@ def softer_instead(found: Selection) -> dict[str, str]:
         soft=regression.soft | some,
         near=regression.linearised,
     )
-    told: dict[str, str] = {}
+    best: dict[int, tuple[Scored, int]] = {}
     sums, now = wide.sums(), found.scored.score
     for name in named:
         rest = [e for e in found.chosen if e != name]
-        instead = [(score_set(wide, sums, (*rest, e)), e) for e in tried]
-        best, soft = min(instead, key=lambda each: each[0].score)
-        if best.score < now + DECISIVE and _beyond(regression, best, soft):
-            does = "would explain far more" if best.score < now - DECISIVE else "would do as well"
-            of = regression.candidates[name].id
-            told[of] = _instead(wide, best, soft, of, does)
+        start = {e: k for e, k in found.scored.by_variant.items() if e != name}
+        instead = [(score_set(wide, sums, (*rest, e), start=start), e) for e in tried]
+        model, soft = min(instead, key=lambda each: each[0].score)
+        if model.score < now + DECISIVE and _beyond(regression, model, soft):
+            best[name] = model, soft
+    return SoftRivals(wide, best, now) if best else None
+
+
+def softer_instead(rivals: SoftRivals | None) -> dict[str, str]:
+    """Names in whose place a soft foundation or tool would do as well → that, in a sentence.
+
+    What is customary goes before what is not. But a user knows what hangs on the flange, and
+    nothing in the readings does.
+    """
+    told: dict[str, str] = {}
+    if rivals is None:
+        return told
+    wide = rivals.regression
+    for name, (best, soft) in rivals.best.items():
+        far = best.score < rivals.named - DECISIVE
+        of = wide.candidates[name].id
+        told[of] = _instead(
+            wide, best, soft, of, "would explain far more" if far else "would do as well"
+        )
     return told
 
 
@@ -146,7 +178,7 @@ def softer_than_customary(final: Fit, soft: Collection[str]) -> list[str]:
     """That causes that had to be so `soft` are, one sentence for each, by its softest value."""
     softest: dict[str, Parameter] = {}
     for p in final.parameters:
-        if p.effect.id in soft and _times(p) > 1.0:
+        if p.effect.id in soft and _times(p) > 1.0 and _is_known(p):
             known = softest.get(p.effect.id)
             if known is None or _times(p) > _times(known):
                 softest[p.effect.id] = p
@@ -156,6 +188,11 @@ def softer_than_customary(final: Fit, soft: Collection[str]) -> list[str]:
         "else would explain these readings."
         for p in softest.values()
     ]
+
+
+def _is_known(p: Parameter) -> bool:
+    """Is a size more than what its error may be?"""
+    return p.internal_std is None or p.internal > KNOWN * p.internal_std
 
 
 def _times(p: Parameter) -> float:
