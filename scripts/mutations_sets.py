@@ -7,6 +7,18 @@ from scripts.mutations_fault import Fault, of, tests
 
 OF_SETS: tuple[Fault, ...] = (
     *of(
+        "explain/judge/rigid_gears.py", *tests("explain", "rigid_gears"),
+        rigid_gears_for_nothing=("if prices.max(initial=0.0) >= OUT_OF_LINE:", "if False:"),
+        drives_out_of_line_for_nothing=("(np.log(tried / usual) / SPREAD) ** 2", "0.0 * tried"),
+        rivals_are_not_asked=("(own, *(e for e in rivals if e not in chosen))", "(own,)"),
+    ),
+    *of(
+        "explain/judge/soft_parts.py", *tests("explain", "brought"),
+        soft_parts_always_lose=("gap > LOST or", "gap > -1e9 or"),
+        soft_parts_are_not_borne_out=("if not said.holds:", "if said.holds:"),
+        what_lies_far_behind_stays_in_the_set=("if -gap < LOST:", "if True:"),
+    ),
+    *of(
         "explain/positions/judge/posterior.py", *tests("positions/explain", "sets"),
         larger_sets_take_the_place=("if 0 < len(each) <= len(here)", "if True"),
         what_fell_comes_back=("            and each.isdisjoint(found.dropped)\n", ""),

@@ -272,14 +272,6 @@ FAULTS: tuple[Fault, ...] = (
         names_listed_until_most_of_what_names_have=("else min(NAMED, whole - LISTED)", "else NAMED * whole"),
     ),
     *of(
-        "explain/judge/rigid_gears.py", *tests("explain", "rigid_gears"),
-        rigid_gears_for_nothing=(
-            "total = model.score + float(prices_of_drives(regression, model).sum())",
-            "total = model.score",
-        ),
-        drives_out_of_line_for_nothing=("(np.log(tried / usual) / SPREAD) ** 2", "0.0 * tried"),
-    ),
-    *of(
         "explain/localise/suspect.py", *tests("explain", "localise"),
         a_wave_among_many_for_nothing=("return 2.0 * float(np.log(self.alike))", "return 0.0"),
     ),

@@ -10,6 +10,7 @@ from sk120stiff import joint_spring_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.explain.candidates.sums import Solved, sums_of
 from sk120stiff.explain.findings import Evidence, Finding
+from sk120stiff.explain.judge import rigid_gears
 from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.confirm import UNTRIED
 from sk120stiff.explain.judge.rigid_gears import (
@@ -23,6 +24,7 @@ from sk120stiff.explain.select.stepwise import Selection, select, with_effects
 from sk120stiff.measurements import Measurements, NoiseModel, NoiseStatement
 from tests.corpus.robots import example
 from tests.explain.readings import SIGMA, base_fit, hidden
+from tests.hidden.generator.causes_elastic import JointTilt
 from tests.real_arms import fanuc
 
 
@@ -53,6 +55,26 @@ if fanuc.FOLDER.is_dir():
         assert said.findings[0].effect.id == beam.id
         assert other.final.chi_square < found.final.chi_square + UNLIKELY
 
+    def test_a_rival_that_leaves_all_gears_goes_first(tmp_path):
+        """Readings hardly tell tilt of joint 3 from the beam that takes its gear away."""
+        arm = fanuc.robot(tmp_path, 1, 1, 1, 1, 1, 1)
+        beam, tilt = (
+            effect(arm, *name) for name in (("link_bending", "link_3"), ("joint_tilt", "joint_3"))
+        )
+        settled = select(
+            joint_spring_model(arm), fanuc.readings(fanuc.MAPPED), NoiseModel(150e-6),
+            (beam, tilt), max_effects=1, alpha=0.01,
+        )  # fmt: skip
+        found = with_effects(settled, [replace(beam, taper=-0.5, roll=True, planes=False)])
+        alone = named(found)
+        odds = {beam.id: 0.9, tilt.id: 0.09}
+        said = replace(alone.findings[0].evidence, odds=odds, rivals={tilt.id: 4.6})
+        asked = Named((replace(alone.findings[0], evidence=said),))
+        other, after = without_rigid_gears(found, asked)
+        assert np.isfinite(springs(other)[:3]).all()
+        assert after.findings[0].effect.id == tilt.id == other.effects[0].id
+        assert after.findings[0].alternatives == (beam.id,)
+
 
 def test_a_law_that_leaves_all_springs_stays(tmp_path):
     base = base_fit(hidden())
@@ -65,6 +87,30 @@ def test_a_law_that_leaves_all_springs_stays(tmp_path):
     found = with_effects(found, [tilt])
     assert np.isfinite(springs(found)).all()
     assert without_rigid_gears(found, named(found)) == (found, named(found))
+
+
+def test_the_name_with_the_cheaper_gears_goes_first(monkeypatch):
+    """Readings of a tilt, named as a bending link whose gears are said to cost more."""
+    base = base_fit(hidden(JointTilt("joint_2_l", {"first": 4e-7, "second": 3e-7})))
+    robot = base.model.robot
+    tilt, beam = effect(robot, "joint_tilt", "joint_2_l"), effect(robot, "link_bending", "link_2_l")
+    settled = select(
+        base.model, base.problem.measurements, base.problem.noise, (tilt, beam),
+        max_effects=1, alpha=0.01,
+    )  # fmt: skip
+    found = with_effects(settled, [beam])
+
+    def by_name(regression, model):
+        ids = [regression.candidates[e].id for e in model.effects]
+        return np.array([0.0, 9.0 * (beam.id in ids)])
+
+    monkeypatch.setattr(rigid_gears, "prices_of_drives", by_name)
+    (alone,) = named(found).findings
+    odds = {beam.id: 0.9, tilt.id: 0.09}
+    asked = Named((replace(alone, evidence=replace(alone.evidence, odds=odds)),))
+    other, after = without_rigid_gears(found, asked)
+    assert other.effects[0].id == after.findings[0].effect.id == tilt.id
+    assert after.findings[0].alternatives == (beam.id,)
 
 
 def priced(compliances, errors, *, held=()) -> float:
