@@ -12,6 +12,7 @@ from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.positions.checks.beside_frames import without_springs
+from sk120stiff.identify.positions.checks.computed import computed
 from sk120stiff.identify.positions.checks.drift import creeping
 from sk120stiff.identify.positions.checks.force_axes import refuse_other_forces
 from sk120stiff.identify.positions.checks.gravity_direction import refuse_another_gravity
@@ -117,7 +118,7 @@ def _fit_positions(
     lacking = beside_lacking(with_model_form(calibrated), model.catalogue)
     found = beside_parts(lacking, model.catalogue)
     by_row = pushed or creeping(found, readings)
-    return replace(found, notes=(*told, *found.notes, *pounds(found), *by_row))
+    return replace(found, notes=(*told, *found.notes, *pounds(found), *computed(found), *by_row))
 
 
 def gauges_as_displacements(model: Model, measurements: Measurements) -> Measurements:

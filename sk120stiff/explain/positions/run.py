@@ -57,6 +57,7 @@ from sk120stiff.identify.positions.calibrate import (
     calibrate,
     refined,
 )
+from sk120stiff.identify.positions.checks.computed import computed
 from sk120stiff.identify.positions.checks.drift import creeping
 from sk120stiff.identify.positions.checks.force_axes import refuse_other_forces
 from sk120stiff.identify.positions.checks.gravity_direction import refuse_another_gravity
@@ -194,6 +195,7 @@ def _explained(
             *final.notes,
             *forms(final, now.picked),
             *pounds(final),
+            *computed(final),
             *([] if pushed else creeping(final, readings)),
             *balancing(final),
             *changed(final, options.seed),
