@@ -23,6 +23,7 @@ from sk120stiff.measurements.channels import ANGLES, OF_AXES, inclined
 from sk120stiff.model import Model, Parameter
 from sk120stiff.model.pose_reading import instrument_frames, move_by_load, read_poses
 
+AT_THE_END = 3.0  # standard deviations of errors of geometry at which the plausible ones end
 ROUGH = 2.0  # m; how far a marker may be off a place that is only roughly known
 
 
@@ -255,12 +256,16 @@ class PoseProblem(Problem):
     def prior(self) -> Array:
         """(P_free,) widths in scaled units within which values are sought.
 
-        Waves over a short range of a joint are much alike; of those that fit, the small ones.
+        Waves over a short range of a joint are much alike; of those that fit, the small ones. Of
+        small errors of geometry what is plausible is the end of what is met, not its width: taken
+        for that, few poses foretell others twice as badly.
         """
         usual = self.span.copy()
         for j, k in enumerate(self.free):
             parameter = self.model.parameters[k]
-            if isinstance(parameter.effect, TransmissionError):
+            if isinstance(parameter.effect, JointFrame):
+                usual[j] /= AT_THE_END
+            elif isinstance(parameter.effect, TransmissionError):
                 usual[j] = parameter.spec.usual
                 usual[j] /= self.scale[j]
         return usual
