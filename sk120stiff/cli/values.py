@@ -13,11 +13,16 @@ SURE = 3.0  # standard errors by which a value of many is told from nothing
 def sure_values(own: Sequence[Parameter], unseen: Container[str]) -> list[str]:
     """Those of many values that are surely not zero, in one line; the report has all."""
     told = [p for p in own if p.name not in unseen and p.std and abs(p.value) > SURE * p.std]
-    return [f"  {', '.join(map(_readable, told))}"] if told else []
+    return [f"  {', '.join(_readable(p, _largest(told, p)) for p in told)}"] if told else []
 
 
-def _readable(p: Parameter) -> str:
-    factor, unit = said_in(p.spec.unit, p.value)
+def _largest(told: Sequence[Parameter], like: Parameter) -> float:
+    """The largest value of the same unit: all of them are said in the unit that suits it."""
+    return max((p.value for p in told if p.spec.unit == like.spec.unit), key=abs)
+
+
+def _readable(p: Parameter, largest: float) -> str:
+    factor, unit = said_in(p.spec.unit, largest)
     std = None if p.std is None else factor * p.std
     return f"{p.spec.name} {with_error(factor * p.value, std, unit)}"
 
