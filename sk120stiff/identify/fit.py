@@ -312,9 +312,9 @@ class Fit:
     @property
     def freedom(self) -> float:
         """Degrees of freedom behind `unit`; infinite where a stated σ bears it alone."""
-        if not self.sigma_known or self.exceeds:
-            return self.degrees_of_freedom
-        return self.problem.noise.freedom
+        known = self.sigma_known and not self.exceeds
+        own = self.problem.noise.freedom if known else self.degrees_of_freedom
+        return min(own, self.problem.freedom_of_form)
 
     @cached_property
     def correlation(self) -> Array:

@@ -70,8 +70,9 @@ def _statistics(fit: Fit) -> list[str]:
         f"Gap {short(fit.rms * 1e6)} µm rms per axis; condition {fit.condition:.3g}.",
     ]
     if fit.problem.weights is None:
+        beside = "Beside what readings of a pose have in common: " if fit.problem.noise.form else ""
         lines.append(
-            f"χ² = {fit.chi_square:.4g}, AIC = {fit.aic:.6g}, BIC = {fit.bic:.6g}, "
+            f"{beside}χ² = {fit.chi_square:.4g}, AIC = {fit.aic:.6g}, BIC = {fit.bic:.6g}, "
             f"log likelihood = {fit.log_likelihood:.6g}."
         )
     test = lack_of_fit(fit)

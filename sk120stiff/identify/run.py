@@ -24,6 +24,7 @@ from sk120stiff.identify.positions.uncertainty.compliant_parts import beside_par
 from sk120stiff.identify.positions.uncertainty.omitted_bias import beside_lacking
 from sk120stiff.identify.positions.words import known_calibration
 from sk120stiff.identify.solve.solvers import Method
+from sk120stiff.identify.uncertainty.errors_of_poses import beside_errors_of_poses
 from sk120stiff.identify.uncertainty.known_model import known_of_displacements
 from sk120stiff.identify.uncertainty.left_over import LeftOver
 from sk120stiff.measurements import Measurements, NoiseModel, as_displacements, taken_as_moved
@@ -94,7 +95,8 @@ def fit(
     kept = {model.parameter(name).name for name in fix}
     parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
     start = replace(model, parameters=tuple(parameters)) if kept else model
-    return fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
+    alone = fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
+    return alone if robust or noise is not None else beside_errors_of_poses(alone)
 
 
 def _fit_positions(

@@ -46,6 +46,18 @@ BENT = [
 LINEAR = [case for case in CASES if isinstance(case.values[1], LinearElastic)]
 
 
+@pytest.mark.parametrize("name", ARMS)
+def test_no_law_of_an_effect_comes_twice(name: str) -> None:
+    """Loads along the first axis put no torque on it, and no gear has steps there."""
+    robot = arm(name)
+    along = readings(robot, 6, seed=2, moments=False)
+    along = replace(along, wrench=along.wrench * [0, 0, 1, 0, 0, 0])
+    for found in every_effect(robot):
+        for usual in (found, *found.other_laws(along)):
+            laws = usual.other_laws(along)
+            assert len(set(laws)) == len(laws) and usual not in laws, usual
+
+
 def alone(name: str, found: object, seed: int = 1) -> Model:
     """Springs and one more effect at values that are not zero."""
     model = sprung(arm(name))

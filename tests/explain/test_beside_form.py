@@ -10,9 +10,9 @@ import pytest
 from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect
 from sk120stiff.explain import Options
-from sk120stiff.explain.judge.beside_form import with_model_form
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.identify import fit, known_model
+from sk120stiff.identify.uncertainty.errors_of_poses import with_model_form
 from sk120stiff.measurements import Measurements, NoiseModel, read_measurements
 from sk120stiff.model import joint_spring_model
 from tests.explain.readings import SIGMA, answered, base_fit, hidden

@@ -7,10 +7,10 @@ import pytest
 
 from sk120stiff import base_model, load_robot
 from sk120stiff.effects import effect, load_cases_of
-from sk120stiff.explain.judge.beside_form import with_model_form
 from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.identify import fit
+from sk120stiff.identify.uncertainty.errors_of_poses import with_model_form
 from sk120stiff.measurements import NoiseModel
 from tests.explain.readings import NOISE, hidden
 from tests.hidden.generator.causes_foreign import AxialLink, TrackerStand

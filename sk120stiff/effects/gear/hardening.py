@@ -130,7 +130,7 @@ class GearHardening(GearEffect):
         laws = [(), *((T,) for T in steps[FIRST:]), *combinations(steps, 2), steps]
         every = [replace(self, breaks=own, sided=False) for own in laws]
         every.append(replace(self, breaks=(), sided=True))
-        return tuple(law for law in every if law != self)
+        return tuple(law for law in dict.fromkeys(every) if law != self)  # without torque no steps
 
     def elongation(self, torques: Array, load_cases: LoadCases, values: Array) -> Elongation:
         """See `Elastic.elongation`. A position has no zero reading to be subtracted."""

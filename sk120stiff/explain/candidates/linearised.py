@@ -73,7 +73,7 @@ def linearised_at(
     joining = [effect for effect in candidates if effect.id not in present]
     full = full + [Parameter(e, spec) for e in joining for spec in e.parameters]
     chosen = [effect for effect in full.effects if effect.id not in base_effects]
-    others = [effect.other_laws(problem.load_cases) for effect in chosen]
+    others = [tuple(dict.fromkeys(effect.other_laws(problem.load_cases))) for effect in chosen]
     if not problem.noise.form:  # beside model-form error no law is right in detail
         for k in [k for k, effect in enumerate(chosen) if effect.id in present]:
             others[k] = (*others[k], *chosen[k].nearby_laws(problem.load_cases))

@@ -21,12 +21,9 @@ from sk120stiff.explain.judge.posterior import NONE, one_more
 from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
-from sk120stiff.identify.uncertainty.variance_components import variance_components
-from sk120stiff.measurements import NoiseModel
-from sk120stiff.measurements.noise.model_form import ModelForm
+from sk120stiff.identify.uncertainty.errors_of_poses import with_model_form
 
 ROUNDS = 3  # of estimating, searching and judging
-WORTH = 2.0  # gain in -2 ln L by which structure has to beat noise that is merely larger
 
 
 def beside_model_form(
@@ -118,17 +115,3 @@ def asked_anew(fit: Fit, at: Fit) -> Fit:
     """The fit with the size of its noise as well known as that of another."""
     noise = replace(fit.problem.noise, freedom=at.problem.noise.freedom)
     return replace(fit, problem=replace(fit.problem, noise=noise))
-
-
-def with_model_form(fit: Fit) -> NoiseModel:
-    """The noise of a fit's readings with the model-form error that its gap asks for.
-
-    Where a larger noise would do as well, nothing is structured, and only the size is let free.
-    """
-    noise = fit.problem.noise
-    found = variance_components(fit)
-    if noise.known and found.inflation_gain > found.gain - WORTH:
-        return replace(noise, form=ModelForm(), freedom=0)
-    if not noise.known:
-        noise = replace(noise, sigma=noise.sigma * found.noise_factor)
-    return replace(noise, form=found.form)

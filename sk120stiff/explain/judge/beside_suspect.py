@@ -28,7 +28,7 @@ from sk120stiff.explain.judge.attribution import (
     judged,
     with_the_strongest,
 )
-from sk120stiff.explain.judge.beside_form import unless_imitating, with_model_form
+from sk120stiff.explain.judge.beside_form import unless_imitating
 from sk120stiff.explain.judge.goes_with import GoesWith
 from sk120stiff.explain.judge.nuisance import Nuisance, nuisance
 from sk120stiff.explain.localise.places import line_up, look_at, ranked
@@ -37,6 +37,7 @@ from sk120stiff.explain.select.best_selection import Try
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit, fit, yardstick
 from sk120stiff.identify.checks.left_over import orthonormal
+from sk120stiff.identify.uncertainty.errors_of_poses import with_model_form
 from sk120stiff.measurements import NoiseModel
 
 ROUNDS = 3  # of estimating what is left beside a suspect, searching and judging

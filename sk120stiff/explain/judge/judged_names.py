@@ -11,12 +11,12 @@ from sk120stiff.explain.judge.attribution import MISSPECIFICATION, Named, judged
 from sk120stiff.explain.judge.beside_form import (
     beside_model_form,
     unless_imitating,
-    with_model_form,
 )
 from sk120stiff.explain.judge.beside_suspect import Account, account_beside
 from sk120stiff.explain.select.best_selection import Try, held_against
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
+from sk120stiff.identify.uncertainty.errors_of_poses import with_model_form
 from sk120stiff.identify.uncertainty.variance_components import variance_components
 from sk120stiff.measurements import NoiseModel
 

@@ -12,7 +12,7 @@ from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
 from sk120stiff.explain.candidates.regression import regression_at
 from sk120stiff.explain.findings import Step
-from sk120stiff.explain.judge.beside_form import asked_anew, with_model_form
+from sk120stiff.explain.judge.beside_form import asked_anew
 from sk120stiff.explain.judge.goes_with import Foretold, foretold
 from sk120stiff.explain.judge.nuisance import nuisance_of
 from sk120stiff.explain.localise.suspects import suspect_named
@@ -21,6 +21,8 @@ from sk120stiff.explain.select.form import from_there, with_best_form
 from sk120stiff.explain.select.own_sizes import with_settled_sizes
 from sk120stiff.explain.select.stepwise import Selection, laws_of, refit, with_own_sizes
 from sk120stiff.identify import Fit, Learn, Problem, fit, held_out
+from sk120stiff.identify.estimate import fit_displacements
+from sk120stiff.identify.uncertainty.errors_of_poses import with_model_form
 from sk120stiff.measurements import Measurements
 
 TRIED = 6  # sets whose fit may be refused before springs alone have to do
@@ -151,7 +153,7 @@ def nested(found: Selection, counts: Sequence[int]) -> Learn:
         return searched(base, counts, near, about)
 
     def learn(readings: Measurements) -> list[Fit]:
-        base = fit(start, readings)
+        base = fit_displacements(start, readings)
         if not whole.form and (whole.known or not base.sigma_known):  # laws that are exact
             return searched(base, counts)[0]
         once, near = beside_what_is_left(base, counts)

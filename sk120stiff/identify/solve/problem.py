@@ -179,6 +179,16 @@ class Problem:
         """(M,) readings whose noise is known, of which alone the misfit is judged; None: of all."""
         return None
 
+    @property
+    def freedom_of_form(self) -> float:
+        """Degrees of freedom behind the size of model-form error; infinite where there is none.
+
+        A pose tells it by three axes, whatever the number of its loads.
+        """
+        if not self.noise.form:
+            return np.inf
+        return float(max(3 * len(self.measurements.poses) - len(self.free), 1))
+
     def values(self, x: Array) -> Array:
         """(P,) internal values for scaled free parameters `x`."""
         full = self.model.values.copy()
