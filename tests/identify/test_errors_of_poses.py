@@ -19,7 +19,7 @@ TRUE = np.array(list(sk120().typical.joint.values()))
 def held(fit) -> np.ndarray:
     """Which true springs the 95 % intervals hold."""
     low, high = np.array(fit.intervals()).T
-    return (low <= TRUE) & (TRUE <= high)
+    return (low <= TRUE) & (high >= TRUE)
 
 
 def test_intervals_hold_springs_of_an_arm_that_keeps_to_no_law() -> None:
