@@ -19,6 +19,7 @@ _THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[.,']\d{3})*(?:(?<=\.\d{3}),|(?<=[,']\d
 _TEXT_MARK = re.compile(r"^'(?=[^']*$)")  # by which spreadsheets mark a text
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
 _COMMENT = ("//", "#", "%")
+_NUMBER_SIGN = re.compile(r"\s*#\s*[,;\t]")  # the header of a column of numbers, no comment
 _BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
 _GB_TRAIL = 0xA1  # least byte of a sign of GB 2312
 _GB_LEVEL_1 = range(0xB0, 0xD8)  # first bytes of its common signs
@@ -69,7 +70,7 @@ def text_grid(path: Path, data: bytes) -> Grid:
     comments: list[tuple[int, str]] = []
     content: list[tuple[int, str]] = []
     for number, line in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
-        if line.lstrip().startswith(_COMMENT):
+        if line.lstrip().startswith(_COMMENT) and not _NUMBER_SIGN.match(line):
             comments.append((number, line.strip().lstrip("/#% ").rstrip()))
         elif line.strip(" \t,;|"):
             content.append((number, line))

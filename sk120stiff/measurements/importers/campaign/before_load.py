@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from sk120stiff.errors import InputError
-from sk120stiff.measurements.importers.campaign.pairing import label_of, paired
+from sk120stiff.measurements.importers.campaign.by_label import label_of
+from sk120stiff.measurements.importers.campaign.pairing import paired
 from sk120stiff.measurements.importers.columns.load_states import WITH, WITHOUT
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.loads.pairs import LOADS

@@ -5,23 +5,25 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError
+from sk120stiff.measurements.importers.campaign.by_label import by_label, label_of
 from sk120stiff.measurements.importers.campaign.by_time import ByTime, by_time, clock_of
 from sk120stiff.measurements.importers.campaign.in_turn import in_turn
 from sk120stiff.measurements.importers.clock import DateOrder
 from sk120stiff.measurements.importers.contract import Column, Sheet, Unpaired
 
-SHARED = 0.5  # of the names of the shorter file, from which on names decide
 NAME, TIME, ORDER = "name", "time", "order"
 
 
 @dataclass(frozen=True)
 class _Pairs:
-    """Rows of the points, those of the other file, how they were found, and what has no partner."""
+    """Rows of the points, those of the other file, how they were found, what has no partner, and
+    the labels of both where these told."""
 
     rows: list[int]
     others: list[int]
     how: str
     unpaired: list[Unpaired]
+    labels: tuple[Column, Column] | None = None
 
 
 def paired(
@@ -68,20 +70,20 @@ def paired(
         times = 1 if turned is None else points.total // other.total
         found = _by_order(points, other, what, untold, times)
     rows, others = found.rows, found.others
+    if found.labels and any(found.labels[0] is c for c in points.spare):  # its header is unknown
+        points = points.exchanged([found.labels[0]], replace(found.labels[0], meaning=NAME))
     lost = list(points.skipped)
-    if found.how == ORDER:
+    if found.how.startswith(ORDER):
         lost += [(line, f"{reason} ({other.path.name})") for line, reason in other.skipped]
     if not rows:
         raise InputError(f"no point has its {what}", where=f"{points.path} and {other.path}")
     taken = {c.meaning for c in points.columns} | {"name"}
     more = [replace(c, file=other.path) for c in other.columns if c.meaning not in taken]
     told = taken - {"name"}
-    theirs = label_of(other) if found.how.startswith(NAME) else None
     clock = clock_of(other) if found.how.startswith(TIME) else ()
-    twice = [
-        c for c in other.columns if c.meaning in told and not any(c is u for u in (theirs, *clock))
-    ]
-    spare = [replace(c, file=other.path) for c in other.spare]
+    used = (*(found.labels or ()), *clock)
+    twice = [c for c in other.columns if c.meaning in told and not any(c is u for u in used)]
+    spare = [replace(c, file=other.path) for c in other.spare if not any(c is u for u in used)]
     kept = points.rows(rows)
     of = "" if alone else f" of {points.path.name}"
     return replace(
@@ -90,7 +92,7 @@ def paired(
         spare=(*kept.spare, *(column.rows(others) for column in spare)),
         skipped=tuple(lost),
         unpaired=(*points.unpaired, *found.unpaired),
-        by_order=(*points.by_order, *([other.path] if found.how == ORDER else [])),
+        by_order=(*points.by_order, *([other.path] if found.how.startswith(ORDER) else [])),
         unused=(
             *points.unused,
             *(f"{item} of {other.path.name}" for item in other.unused),
@@ -106,39 +108,39 @@ def paired(
 
 
 def _by_name(points: Sheet, other: Sheet, what: str) -> _Pairs | None:
-    """By the names of both, where these agree; None where none does.
+    """By the labels of both, where these agree; None where none does.
 
     Raises:
         InputError: A few do.
     """
-    mine, theirs = label_of(points), label_of(other)
-    if not mine or not theirs or len(set(theirs.cells)) < len(theirs.cells):
+    found = by_label(points, other)
+    if found is None:
         return None
-    place = {name: k for k, name in enumerate(theirs.cells)}
-    shared = set(mine.cells) & place.keys()
-    if shared and len(shared) < SHARED * min(len(set(mine.cells)), len(place)):
+    place = {key: k for k, key in enumerate(found.other_keys)}
+    if not found.enough:
         raise InputError(
-            f"only {len(shared)} of {len(place)} names agree ({min(shared)} among them): the "
-            f"{what} belong to other points",
+            f"only {len(found.shared)} of {len(place)} names agree ({min(found.shared)} among "
+            f"them): the {what} belong to other points",
             where=f"{points.path} and {other.path}",
             remedy="Give both files the same names, or take the names out of one of them: "
             "rows then belong together by order.",
         )
-    if not shared:
-        return None
-    rows = [k for k, name in enumerate(mine.cells) if name in place]
+    rows = [k for k, key in enumerate(found.keys) if key in place]
     left = [
-        Unpaired(points.path, points.lines[k], name, f"not in {other.path.name}")
-        for k, name in enumerate(mine.cells)
-        if name not in place
+        Unpaired(points.path, points.lines[k], found.mine.cells[k], f"not in {other.path.name}")
+        for k, key in enumerate(found.keys)
+        if key not in place
     ]
     left += [
-        Unpaired(other.path, other.lines[k], name, "no point", beside=True)
-        for name, k in place.items()
-        if name not in shared
+        Unpaired(other.path, other.lines[k], found.theirs.cells[k], "no point", beside=True)
+        for key, k in place.items()
+        if key not in found.shared
     ]
-    how = f"{NAME} ({mine.header}, {theirs.header})"
-    return _Pairs(rows, [place[mine.cells[k]] for k in rows], how, left)
+    headers = f"{found.mine.header}, {found.theirs.header}"
+    first = found.mine.cells[rows[0]], found.theirs.cells[place[found.keys[rows[0]]]]
+    example = f", as {first[0]} and {first[1]}" if first[0] != first[1] else ""
+    how = f"{NAME} ({headers}{f'; {found.how}{example}' if found.how else ''})"
+    return _Pairs(rows, [place[found.keys[k]] for k in rows], how, left, (found.mine, found.theirs))
 
 
 def _by_time(points: Sheet, other: Sheet, dates: DateOrder | None) -> _Pairs | str | None:
@@ -176,10 +178,6 @@ def _by_order(points: Sheet, other: Sheet, what: str, untold: str, times: int = 
         )
     place_of = {rank: k for k, rank in enumerate(other.rank)}
     rows = [k for k, rank in enumerate(points.rank) if rank // times in place_of]
-    return _Pairs(rows, [place_of[points.rank[k] // times] for k in rows], ORDER, [])
-
-
-def label_of(sheet: Sheet) -> Column | None:
-    """The column of names, else that of poses if every row has one."""
-    pose = sheet.get("pose")
-    return sheet.get("name") or (pose if pose is not None and all(pose.cells) else None)
+    mine, theirs = label_of(points), label_of(other)
+    said = f" ({mine.header} and {theirs.header} do not agree)" if mine and theirs else ""
+    return _Pairs(rows, [place_of[points.rank[k] // times] for k in rows], ORDER + said, [])

@@ -8,7 +8,7 @@ from itertools import accumulate, pairwise
 from pathlib import Path
 
 from sk120stiff.errors import InputError, listed
-from sk120stiff.measurements.importers.campaign.pairing import SHARED, label_of
+from sk120stiff.measurements.importers.campaign.by_label import SHARED, label_of
 from sk120stiff.measurements.importers.contract import FILE, Column, Sheet, Unpaired
 from sk120stiff.measurements.importers.loads.pairs import LOADS
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from sk120stiff import units
 from sk120stiff.measurements.importers.columns.chinese import in_english
 from sk120stiff.measurements.importers.columns.gauge_units import counted_unit
+from sk120stiff.measurements.importers.columns.label_words import label_of_word
 from sk120stiff.measurements.importers.columns.load_states import state_of
 from sk120stiff.measurements.importers.columns.masses import MASSES
 from sk120stiff.measurements.importers.contract import Meanings
@@ -46,8 +47,7 @@ _AXES = {
 }
 _PATTERNS = {prefix: re.compile(pattern) for prefix, pattern in _AXES.items()}
 _NAMES = {
-    "name": "name|id|point|point id|point name|target|target name|pt|tag|tag name|label|punkt|"
-    "punktname|punktnummer|messpunkt|point no|nr|no|object|object name|feature|feature name|index",
+    "name": "object|object name|feature|feature name|punktname|punktnummer",
     "group": "group|group name|point group|tag group",
     "collection": "collection|collection name",
     "order": "order|step order|seq|sequence|measurement order",
@@ -55,8 +55,6 @@ _NAMES = {
     "date and time|datetime|zeit|uhrzeit|zeitstempel|datum uhrzeit|datum/uhrzeit|datum zeit|"
     "datum/zeit|datum und uhrzeit|heure|date heure|ora|hora|fecha hora",
     "date": "date|datum|fecha",
-    "pose": "pose|pose id|pose no|pose nr|pose number|pose name|posture|stellung|stellung nr|"
-    "roboterstellung|messstellung|posa|postura",
     "branch": "branch|load branch|ast|lastast|belastungsast",
     "repeat": "repeat|repetition|rep|wdh|wdh nr|wiederholung|wiederholung nr|run|run no|durchgang|"
     "durchlauf|répétition|ripetizione|repetición",
@@ -167,6 +165,9 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     plain = re.sub(r"[\s_.\-:()\[\],]+", " ", plain).strip()
     if plain in _WORDS:
         return _WORDS[plain], 1.0
+    label = label_of_word(plain)
+    if label:
+        return label, 1.0
     joint = JOINT.fullmatch(plain)
     if joint:
         return f"joint {int(joint[1])}", 1.0

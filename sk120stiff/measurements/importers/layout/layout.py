@@ -12,6 +12,7 @@ from sk120stiff.measurements.importers.clock import in_seconds
 from sk120stiff.measurements.importers.columns.compound_groups import with_compounds
 from sk120stiff.measurements.importers.columns.gauge_units import counted_unit, multiplied
 from sk120stiff.measurements.importers.columns.joint_names import with_joint_names
+from sk120stiff.measurements.importers.columns.label_words import with_labels
 from sk120stiff.measurements.importers.columns.load_states import with_states
 from sk120stiff.measurements.importers.columns.masses import with_masses
 from sk120stiff.measurements.importers.columns.matrices import with_matrices
@@ -221,6 +222,7 @@ def _understood(
     known = with_vendor_joints(names, known, source.actuated)
     known, of_matrix = with_matrices(names, known, below)
     known, of_joints = with_joint_names(headers, known, below, source.actuated, where)
+    known = with_labels(names, known, units_of)
     return known, units_of, [*notes, *of_matrix, *of_joints]
 
 

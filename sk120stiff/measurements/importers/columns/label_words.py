@@ -1,0 +1,67 @@
+"""Headers of columns that name points or poses, in the languages of laboratories.
+
+A noun, a word for "number", or both in any order: ``Punto``, ``N°``, ``Point no.``, ``Nr. Pose``.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Sequence
+
+from sk120stiff.measurements.importers.contract import Meanings
+
+_NUMBER = (
+    r"no|nr|num|number|nummer|numero|n°|#|id|idx|index|name|nom|nome|nombre|bezeichnung|label|"
+    r"cislo|numer|номер"
+)
+_POINT = (
+    "point|points|pt|measur(?:ing|ement) point|target|tag|punkt|pkt|messpunkt|messstelle|"
+    "punkt pomiarowy|point de mesure|punto|punto di misura|punto de medi(?:da|cion)|ponto|"
+    "ponto de medi(?:da|cao)|punt|meetpunt|bod|merici bod|точка"
+)
+_POSE = (
+    "pose|robot pose|posture|stellung|roboterstellung|messstellung|roboterpose|posa|postura|"
+    "posture du robot|поза"
+)
+_MAYBE = (  # a label where no other column is one: each is a word for other things, too
+    "position|positions|pos|posicao|posicion|posizione|pozice|pozycja|позиция|configuration|config|"
+    "conf|konfiguration|configuracion|configurazione|configuracao|measurement|messung|mesure|"
+    "misura|medida|medicion|medicao|test|versuch|essai|prova|ensayo|ensaio|trial|experiment"
+)
+
+
+def _named(nouns: str) -> re.Pattern[str]:
+    of = r"(?: (?:of|de|du|di|do|da|del))?"
+    return re.compile(rf"(?:(?:{_NUMBER}){of} ?)?(?:robot )?(?:{nouns})(?: ?(?:{_NUMBER}))?")
+
+
+_SURE = {"pose": _named(_POSE), "name": re.compile(f"{_named(_POINT).pattern}|{_NUMBER}")}
+_OPEN = _named(_MAYBE)
+
+
+def label_of_word(plain: str) -> str | None:
+    """``name`` of a point or ``pose``, as a header in small letters says; None: neither."""
+    word = _without_accents(plain)
+    return next((meaning for meaning, each in _SURE.items() if each.fullmatch(word)), None)
+
+
+def with_labels(names: Sequence[str], meanings: Meanings, units: Sequence[str | None]) -> Meanings:
+    """Meanings with a column called Position, Configuration or Test as the names of rows, where no
+    other column has these, and without a unit: what has one was measured."""
+    out = list(meanings)
+    if any(known and known[0] in ("name", "pose") for known in out):
+        return out
+    for k, name in enumerate(names):
+        plain = re.sub(r"[\s_.\-:()\[\],]+", " ", name).strip().lower()
+        if out[k] is None and units[k] is None and _OPEN.fullmatch(_without_accents(plain)):
+            out[k] = "name", 1.0
+            break
+    return out
+
+
+def _without_accents(plain: str) -> str:
+    """Letters without accents, the sign of a number as ``n°`` whichever ring it is written with."""
+    ring = plain.replace("º", "°").replace("ª", "")
+    apart = unicodedata.normalize("NFKD", ring).lower()
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
