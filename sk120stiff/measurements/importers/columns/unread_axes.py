@@ -10,6 +10,7 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import listed
 from sk120stiff.measurements.directions import along_axes, in_columns, nearest_axes
+from sk120stiff.measurements.importers.columns.gauge_units import GAUGE_WORDS
 from sk120stiff.measurements.importers.columns.load_states import WITH, WITHOUT, state_of
 from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet
 from sk120stiff.measurements.importers.told import (
@@ -28,16 +29,15 @@ TINY = 1e-300  # of a direction that is none
 BLANK = {
     "", "nan", "n/a", "na", "n.a.", "n.a", "-", "--", "---", "none", "null", "#n/a",
 }  # fmt: skip
-_GAUGES = (
-    "d", "gauge", "dial gauge", "dial indicator", "dial", "messuhr", "comparateur", "comparatore",
-)  # fmt: skip
+_READ = "(?:reading|value|anzeige|ablesung|wert|lecture|lettura|lectura|leitura)"
+_GAUGES = re.compile(rf"(?:{_READ} (?:of )?)?(?:{GAUGE_WORDS})(?: ?{_READ})?(?: 1)?")
 
 
 def with_gauges(names: Sequence[str], meanings: Sequence[tuple[str, float] | None]) -> Meanings:
     """``d`` beside ``ux uy uz``, or beside a column of letters of axes, is what a gauge reads along
     that direction; else those three are uncertainties."""
     plain = [" ".join(name.replace("_", " ").lower().split()) for name in names]
-    read = [k for k, name in enumerate(plain) if name in _GAUGES and meanings[k] is None]
+    read = [k for k, name in enumerate(plain) if _GAUGES.fullmatch(name) and meanings[k] is None]
     others = {known[0] for known in meanings if known}
     letters = IN_A_LETTER in others
     if letters and (pair := gauge_pair(names)):
@@ -62,7 +62,7 @@ def gauge_pair(names: Sequence[str]) -> dict[str, int]:
     out: dict[str, int] = {}
     for k, name in enumerate(names):
         said = state_of(" ".join(re.sub(r"[\s_.\-]+", " ", name).lower().split()))
-        if said and said[1] in _GAUGES:
+        if said and _GAUGES.fullmatch(said[1]):
             if said[0] in out:
                 return {}
             out[said[0]] = k
@@ -121,8 +121,20 @@ def displacements(
         cells = texts(column) if column is not None else ("",) * len(sheet.lines)
         written.append((f"{name}[{unit}]", cells))
     missing = [name for name in DISPLACEMENTS if name not in columns]
-    said = f"Of {listed(missing)} there is no column: not read."
-    return values, tuple(written), list(columns.values()), [said] if missing else []
+    said = [f"Of {listed(missing)} there is no column: not read."] if missing else []
+    gauges = [f"{c.header} along {name[1]}" for name, c in columns.items() if _of_gauge(c.header)]
+    if gauges:
+        said.append(
+            f"{listed(gauges)}: of a gauge, whose reading is taken to rise along that axis of the "
+            "base; where it falls, turn the sign of the column."
+        )
+    return values, tuple(written), list(columns.values()), said
+
+
+def _of_gauge(header: str) -> bool:
+    """Does a header name a gauge, and not a difference alone, as dx does?"""
+    words = header.lower().split()
+    return words[:1] != ["d"] and re.match(rf"{GAUGE_WORDS}\b", header.lower()) is not None
 
 
 def _of_gauges(

@@ -7,7 +7,11 @@ from collections.abc import Sequence
 
 from sk120stiff import units
 from sk120stiff.measurements.importers.columns.chinese import in_english
-from sk120stiff.measurements.importers.columns.gauge_units import counted_unit
+from sk120stiff.measurements.importers.columns.gauge_units import (
+    GAUGE_WORDS,
+    counted_unit,
+    unit_behind,
+)
 from sk120stiff.measurements.importers.columns.label_words import label_of_word
 from sk120stiff.measurements.importers.columns.load_states import state_of
 from sk120stiff.measurements.importers.columns.masses import MASSES
@@ -30,7 +34,8 @@ _AXES = {
     "deviation ": rf"(?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta) {_AXIS}"
     rf"|{_AXIS.replace('a>', 'b>')} (?:dev(?:iation)?|dif{{1,2}}|difference|err(?:or)?|delta)",
     "d": rf"d ?{_AXIS}|(?:{_MOVED}) {_AXIS.replace('a>', 'b>')}"
-    rf"|{_AXIS.replace('a>', 'c>')} (?:{_MOVED})",
+    rf"|{_AXIS.replace('a>', 'c>')} (?:{_MOVED})"
+    rf"|{GAUGE_WORDS} (?:reading )?{_AXIS.replace('a>', 'e>')}",
     "turn ": rf"(?:d|delta) ?(?:r|rot(?:ation)?|phi|theta|th) ?{_AXIS}"
     rf"|(?:turn|twist|verdrehung) {_AXIS.replace('a>', 'b>')}",
     "u95 ": rf"(?:u ?95|exp(?:anded)? unc(?:ertainty)?) ?{_AXIS}"
@@ -127,6 +132,9 @@ def unit_of_header(header: str) -> tuple[str, str | None]:
         unit = UNITS_IN_WORDS.get(match[1].strip().lower(), match[1].strip())
         if is_unit(unit):
             return f"{plain[: match.start()]} {plain[match.end() :]}".strip(), unit
+    parts = unit_behind(header.strip())
+    if parts:
+        return parts
     tail = _TAIL.fullmatch(header.strip())
     if tail:
         return tail[1], tail[2] or tail[3]

@@ -14,7 +14,7 @@ from sk120stiff.measurements.importers.layout.headerless import of_other_columns
 from sk120stiff.measurements.importers.layout.layout import SEARCHED, Layout, layout_of, sheet_of
 from sk120stiff.measurements.table.columns import DISPLACEMENTS, FORCES, MOMENTS, POSITIONS
 
-_BEGUN = re.compile(r"\s*([xyz])\s*[\[(]", re.IGNORECASE)
+_BEGUN = re.compile(r"\s*(?:d ?)?([xyz])\s*[\[(]", re.IGNORECASE)
 _HOLDS = (  # what a table is of, by the meanings of its columns
     ("x, y, z", POSITIONS), ("dx, dy, dz", DISPLACEMENTS),
     ("a gauge and its direction", ("gauge",)), ("dx", ("dx",)), ("dy", ("dy",)), ("dz", ("dz",)),
@@ -170,8 +170,8 @@ def _refuse_some_coordinates(source: Source, joints: Layout) -> None:
         raise InputError(
             f"the units of {', '.join(begun)} are not known",
             where=str(source.path),
-            remedy="Known lengths are m, mm, um and in: x[mm]; or leave the unit out and give "
-            "--length.",
+            remedy="Known lengths are m, mm, um and in: x[mm]; of dial gauges 1/100 mm, "
+            "10^-2 mm and mil, too; or leave the unit out and give --length.",
         )
     missing = [axis for axis in POSITIONS if axis not in there]
     raise InputError(
