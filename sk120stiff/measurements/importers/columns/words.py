@@ -20,10 +20,15 @@ from sk120stiff.measurements.importers.contract import Meanings
 TS = ("tx", "ty", "tz")
 _AXIS = r"(?P<a>[xyz])"
 _MOVED = (
-    "displacement|deflection|disp|verschiebung|verformung|auslenkung|d[eé]placement|d[eé]formation|"
-    "spostamento|desplazamiento"
+    "(?:measured |tracker )?(?:displacements?|deflections?|disp|verschiebung(?:en)?|"
+    "verformung(?:en)?|auslenkung(?:en)?|durchbiegung(?:en)?|d[eé]placements?|d[eé]formations?|fl[eè]ches?|"
+    "spostament[oi]|deformazion[ei]|desplazamientos?|deformaci[oó]n|flecha|deslocamentos?|"
+    "deforma[cç][aã]o|verplaatsing|przemieszczenie)"
 )
-_FORCE = "force|kraft|forza|fuerza"
+_FORCE = (
+    "(?:applied |external )?"
+    "(?:forces?|kraft|kr[aä]fte|forz[ae]|fuerzas?|for[cç]as?|kracht|si[lł]a|wrench)"
+)
 _AXES = {
     "": rf"(?:(?:p|pos(?:ition)?|[ck]oord(?:inate)?|point|marker|trans(?:lation)?) ?)?{_AXIS}"
     r"(?: (?:[ck]oord(?:inate)?|pos(?:ition)?|value|wert))?",
@@ -194,6 +199,24 @@ def meaning_of(name: str, actuated: tuple[str, ...] = ()) -> tuple[str, float] |
     if _TEMPERATURE.fullmatch(plain):
         return "temperature", 1.0
     return None
+
+
+def with_forces(
+    names: Sequence[str], meanings: Meanings, units_of: Sequence[str | None]
+) -> Meanings:
+    """Meanings with what is counted in units of a force or a moment, and is called ``Load X``,
+    ``Carga y`` or the like, as a force or moment along that axis, whatever the other words are."""
+    out = list(meanings)
+    for k, (name, unit) in enumerate(zip(names, units_of, strict=True)):
+        known = out[k]
+        words = re.sub(r"[\s_.\-:()\[\],]+", " ", name).strip().lower().split()
+        axis = next((w for w in (words[-1:] + words[:1]) if w in ("x", "y", "z")), None)
+        if axis is None or not unit or (known and kind_of(known[0]) != "length"):
+            continue
+        for kind, letter in (("force", "f"), ("moment", "m")):
+            if units.is_kind(unit, kind):
+                out[k] = f"{letter}{axis}", 1.0
+    return out
 
 
 def with_torques(

@@ -33,6 +33,10 @@ FEWEST = 3  # columns that the lower row, alone or with the upper one, names at 
 SHORTEST = 3  # letters of a word above x y z; fewer may be the name of a marker, if no unit follows
 _MARKERS = ("nominal x", "measured x", "tcp x")  # words such as Target, Tracker, Tool: markers, too
 _NO_GROUP = ("x", "orientation x", "qx", "tx")
+_OF_JOINTS = re.compile(
+    r"(?:robot )?(?:joint|axis|axes|gelenk|achs|axe|assi|giunt|eje|articula|junta|eixo|关节|轴)",
+    re.IGNORECASE,
+)
 Row = tuple[str, ...]
 
 
@@ -46,11 +50,26 @@ def in_one_row(source: Source) -> Source:
     if grid is None:
         return source
     for k in range(1, min(SEARCHED, len(grid.rows))):
+        if _worded(grid.rows[k - 1]):
+            grid = _with_joints(grid, k)
         if _worded(grid.rows[k - 1]) and _worded(grid.rows[k]):
             made = _joined(grid, k, source.actuated)
             if made is not None:
                 return dataclasses.replace(source, given=made)
     return source
+
+
+def _with_joints(grid: Grid, at: int) -> Grid:
+    """The grid with 1 2 3 ... below a word for joints as J1 J2 J3 ...; as it is without such."""
+    upper, lower = grid.rows[at - 1], grid.rows[at]
+    above = _spread(upper, lower)
+    counts = [k for k, cell in enumerate(lower) if cell.isdigit() and _OF_JOINTS.match(above[k])]
+    numbers = [int(lower[k]) for k in counts]
+    begins = numbers[:1] in ([0], [1]) and len(numbers) > 1
+    if not begins or numbers != list(range(numbers[0], numbers[0] + len(numbers))):
+        return grid
+    named = tuple(f"J{cell}" if k in counts else cell for k, cell in enumerate(lower))
+    return dataclasses.replace(grid, rows=(*grid.rows[:at], named, *grid.rows[at + 1 :]))
 
 
 def _worded(row: Row) -> bool:
@@ -67,11 +86,13 @@ def _joined(grid: Grid, at: int, actuated: Row) -> Grid | None:
     named = [unit_of_header(cell) for cell in lower]
     if any("rotation" in cell.lower() for cell in above):  # of mocap programs, known elsewhere
         return None
-    told = _told(above, [name for name, _ in named], f"{grid.path}, line {grid.lines[at - 1]}")
+    place = f"{grid.path}, line {grid.lines[at - 1]}"
+    told = _told(above, [name for name, _ in named], _units(grid, at, above), place)
     headers: list[str] = []
     for k, cell in enumerate(lower):
         if k in told:
-            headers.append(told[k] + (f" [{named[k][1]}]" if named[k][1] else ""))
+            unit = named[k][1] or (of if _is_load(of := unit_of_header(above[k])[1]) else None)
+            headers.append(told[k] + (f" [{unit}]" if unit else ""))
         elif (not cell or (told and is_unit(cell.strip("[]() ")))) and _known(
             name := _at(upper, k), actuated
         ):
@@ -103,7 +124,22 @@ def _spread(upper: Row, lower: Row) -> list[str]:
     return out
 
 
-def _told(above: Sequence[str], below: Sequence[str], where: str) -> dict[int, str]:
+def _units(grid: Grid, at: int, above: Sequence[str]) -> list[str | None]:
+    """The unit of each column of the lower row: in its header, in the one above, or below it."""
+    below = grid.rows[at + 1] if at + 1 < len(grid.rows) else ()
+    texts = [cell.strip("[]() ") for cell in below]
+    stated = [cell if is_unit(cell) else None for cell in texts]
+    of_rows = stated if not any(map(is_number, below)) and any(stated) else []
+    own = [unit_of_header(cell)[1] for cell in grid.rows[at]]
+    return [
+        unit or unit_of_header(cell)[1] or (of_rows[k] if k < len(of_rows) else None)
+        for k, (unit, cell) in enumerate(zip(own, above, strict=True))
+    ]
+
+
+def _told(
+    above: Sequence[str], below: Sequence[str], stated: Sequence[str | None], where: str
+) -> dict[int, str]:
     """Column → its header, where only both rows together tell what it is.
 
     Raises:
@@ -115,7 +151,9 @@ def _told(above: Sequence[str], below: Sequence[str], where: str) -> dict[int, s
             groups.setdefault(cell, []).append(k)
     whole = {c: p for c, p in groups.items() if [below[k].lower() for k in p] == list(POSITIONS)}
     names = {cell: unit_of_header(cell)[0] for cell in whole}
-    called = _called(names, where)
+    loads = {cell for cell, places in whole.items() if _is_load(stated[places[0]])}
+    called = _called({c: n for c, n in names.items() if c not in loads}, where)
+    called |= {cell: names[cell] for cell in loads}
     out = {k: f"{called[c]} {below[k]}" for c, p in whole.items() if c in called for k in p}
     pairs = [unit_of_header(cell)[0] if cell else "" for cell in above]
     both = [f"{a} {b}" if b else "" for a, b in zip(pairs, below, strict=True)]
@@ -124,6 +162,10 @@ def _told(above: Sequence[str], below: Sequence[str], where: str) -> dict[int, s
         if known and known[0].startswith((WITHOUT, WITH)) and state_of(_plain(below[k])):
             out[k] = both[k]
     return out
+
+
+def _is_load(unit: str | None) -> bool:
+    return unit is not None and (units.is_kind(unit, "force") or units.is_kind(unit, "moment"))
 
 
 def _called(names: dict[str, str], where: str) -> dict[str, str]:

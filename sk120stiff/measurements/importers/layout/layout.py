@@ -35,6 +35,7 @@ from sk120stiff.measurements.importers.columns.words import (
     kind_of,
     meaning_of,
     unit_of_header,
+    with_forces,
     with_torques,
 )
 from sk120stiff.measurements.importers.contract import Column, Meanings, Sheet, Source
@@ -211,7 +212,7 @@ def _understood(
     names = [name for name, _ in named]
     units_of = list(stated) if stated is not None else [unit for _, unit in named]
     known = [meaning(name, source.actuated) if name else None for name in names]
-    known = with_gauges(names, with_states(names, known))
+    known = with_forces(names, with_gauges(names, with_states(names, known)), units_of)
     where = str(source.path)
     known, units_of, notes = with_compounds(
         headers, known, units_of, source.actuated, source.topic,

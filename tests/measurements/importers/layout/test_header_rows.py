@@ -110,6 +110,46 @@ def test_other_groups_have_their_meaning(
     assert meaning in found and "x" in found and "marker" not in found
 
 
+@pytest.mark.parametrize(
+    "force", ["Load", "Last", "Carga", "Força", "Applied force", "Belastung", "Effort"]
+)
+def test_units_tell_what_is_a_force(tmp_path: Path, force: str) -> None:
+    """In the third row or above x y z: no word for it need be known."""
+    upper = f"Pose,Joints,,{force},,,Laser tracker,,\n,J1,J2,X,Y,Z,X,Y,Z\n"
+    rows = "P1,10,20,0,0,-100,1,2,3\nP2,30,40,0,0,-90,4,5,6\n"
+    below = sheet_of(tmp_path, f"{upper},deg,deg,N,N,N,mm,mm,mm\n{rows}", TWO)
+    above = upper.replace(force, f"{force} [N]").replace("tracker", "tracker [mm]")
+    for sheet in (below, sheet_of(tmp_path, above + rows, TWO)):
+        assert cells(sheet)["fz"] == ("-100", "-90") and cells(sheet)["x"] == ("1", "4")
+        assert {c.unit for c in sheet.columns if c.meaning in ("x", "y", "z")} == {"mm"}
+
+
+def test_moments_beside_forces(tmp_path: Path) -> None:
+    text = (
+        "Pose,Joints,,Load,,,Torsion,,,Tracker,,\n,J1,J2,X,Y,Z,X,Y,Z,X,Y,Z\n"
+        ",deg,deg,N,N,N,N*m,N*m,N*m,mm,mm,mm\nP1,10,20,0,0,-100,1,2,3,7,8,9\n"
+    )
+    found = cells(sheet_of(tmp_path, text, TWO))
+    assert (found["fz"], found["mz"], found["z"]) == (("-100",), ("3",), ("9",))
+
+
+@pytest.mark.parametrize(
+    "moved",
+    ["Displacements", "Measured displacement", "Durchbiegung", "Deslocamento", "Flèche",
+     "Deformación", "Tracker deflection"],
+)  # fmt: skip
+def test_displacements_below_a_word_for_them(tmp_path: Path, moved: str) -> None:
+    text = f"Pose,Joints,,Force,,,{moved},,\n,1,2,X,Y,Z,X,Y,Z\n,°,°,N,N,N,mm,mm,mm\n"
+    found = cells(sheet_of(tmp_path, text + "P1,10,20,0,0,-100,1,2,3\n", TWO))
+    assert found["dz"] == ("3",) and found["joint 2"] == ("20",)
+
+
+@pytest.mark.parametrize(("word", "known"), [("Achsen", True), ("Axis", True), ("Cycle", False)])
+def test_numbers_below_a_word_for_joints(tmp_path: Path, word: str, known: bool) -> None:
+    text = f"Pose,{word},,Tracker,,\n,1,2,X,Y,Z\n,deg,deg,mm,mm,mm\nP1,10,20,1,2,3\n"
+    assert ("joint 2" in cells(sheet_of(tmp_path, text, TWO))) is known
+
+
 def test_names_of_markers_stay_names(tmp_path: Path) -> None:
     for first, second in (("SMR1", "SMR2"), ("Base", "Tool"), ("F", "M")):
         sheet = sheet_of(tmp_path, table(first, second), TWO)
