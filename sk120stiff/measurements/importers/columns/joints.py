@@ -10,6 +10,11 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import InputError, listed, meant
 from sk120stiff.measurements.importers.columns.compound_groups import groups_of, shown
+from sk120stiff.measurements.importers.columns.not_taken import (
+    NO_JOINTS,
+    own_places,
+    robot_poses,
+)
 from sk120stiff.measurements.importers.columns.words import unit_of_header
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.told import Told, quantity, texts, unit_of
@@ -88,12 +93,21 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
     numbered = _numbered(sheet)
     n = len(actuated)
     robot = f"The actuated joints are {', '.join(actuated)}."
+    poses = [] if numbered else robot_poses(sheet) or own_places(sheet)
+    if poses:
+        raise InputError(
+            f"this file holds poses of the robot in space ({listed(poses)}) or what an instrument "
+            "read, and no joint values" + _may_be(sheet, n),
+            where=str(sheet.path),
+            remedy=f"{NO_JOINTS}: beside the readings, or with --joints-file FILE."
+            f"{_in_sheets(sheet)} {robot}",
+        )
     if not numbered:
         raise InputError(
             "this file holds no joint values" + _may_be(sheet, n),
             where=str(sheet.path),
             remedy="Give the file that does: --joints-file FILE; or name its columns with "
-            f"--joints. {robot}",
+            f"--joints.{_in_sheets(sheet)} {robot}",
         )
     start = 0 if 0 in numbered else 1
     names = [unit_of_header(c.header)[0] for c in (*numbered.values(), *sheet.spare)]
@@ -116,6 +130,17 @@ def _found(sheet: Sheet, actuated: tuple[str, ...]) -> list[Column]:
             "with --joints.",
         )
     return [numbered[k] for k in range(start, start + n)]
+
+
+def _in_sheets(sheet: Sheet) -> str:
+    """How to name another sheet of the workbook, as a sentence with a blank before it."""
+    others = [item[len("sheet ") :] for item in sheet.unused if item.startswith("sheet ")]
+    if not others:
+        return ""
+    return (
+        f" Of the other sheets here ({listed(others)}) say which has them: --sheet "
+        f"'joints={others[0]}'."
+    )
 
 
 def _may_be(sheet: Sheet, joints: int) -> str:

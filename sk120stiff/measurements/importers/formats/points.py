@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.columns.compound_groups import groups_of, shown
+from sk120stiff.measurements.importers.columns.not_taken import refuse_contacts_and_images
 from sk120stiff.measurements.importers.columns.unread_axes import gauge_pair
 from sk120stiff.measurements.importers.columns.words import kind_of, unit_of_header
 from sk120stiff.measurements.importers.contract import NO, Guess, Sheet, Source
-from sk120stiff.measurements.importers.layout.headerless import of_other_columns, shaped
+from sk120stiff.measurements.importers.layout.headerless import cut, of_other_columns, shaped
 from sk120stiff.measurements.importers.layout.layout import SEARCHED, Layout, layout_of, sheet_of
 from sk120stiff.measurements.table.columns import DISPLACEMENTS, FORCES, MOMENTS, POSITIONS
 
@@ -52,6 +53,7 @@ class Points:
         if layout is None and source.role == "points" and (places := _places(source)):
             raise _several_places(source, places)
         if layout is None and (alone := _joints_alone(source)) is not None:
+            _refuse_other_kinds(source, alone)
             _refuse_some_coordinates(source, alone)
             raise _no_positions(source, alone)
         if layout is None:
@@ -77,6 +79,20 @@ class Points:
         if source.role != "points":
             why = "columns as told" if source.columns else f"its headers name the {source.role}"
         return sheet_of(source, layout, "a table of readings", why)
+
+
+def _refuse_other_kinds(source: Source, joints: Layout) -> None:
+    """Refuse contacts and images beside joints.
+
+    Raises:
+        InputError: They are there.
+    """
+    row = next((cut(r, len(joints.headers)) for r in source.grid.rows[joints.first :]), ())
+    cells = (*row, *[""] * (len(joints.headers) - len(row)))
+    unknown = [k for k, m in enumerate(joints.meanings) if m is None and joints.headers[k]]
+    refuse_contacts_and_images(
+        [joints.headers[k] for k in unknown], [cells[k] for k in unknown], str(source.path)
+    )
 
 
 def _joints_alone(source: Source) -> Layout | None:
