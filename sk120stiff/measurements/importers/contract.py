@@ -38,6 +38,7 @@ class Source:
         given: Its rows, where they were made of something else.
         called: Which file of several it is, as --sheet names it: before, joints, loads or none.
         beside: A sheet of the same workbook that is used for another of them.
+        parts: Sheets of the workbook that are read as one campaign, this one among them.
         state: ``unloaded`` or ``loaded``: of several sheets the one whose name says so.
     """
 
@@ -52,6 +53,7 @@ class Source:
     called: str = ""
     beside: str | None = None
     state: str | None = None
+    parts: tuple[str, ...] = ()
 
     @cached_property
     def data(self) -> bytes:

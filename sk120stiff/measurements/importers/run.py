@@ -5,10 +5,9 @@ Points, joints and loads of separate files are put side by side.
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,44 +18,24 @@ from sk120stiff.arrays import Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.files.reading import assembled
-from sk120stiff.measurements.importers.campaign.before_load import with_before
-from sk120stiff.measurements.importers.campaign.pairing import paired
-from sk120stiff.measurements.importers.campaign.several_files import joined
-from sk120stiff.measurements.importers.columns.load_states import WITH, WITHOUT
-from sk120stiff.measurements.importers.columns.orientations import named
-from sk120stiff.measurements.importers.columns.rows_in_words import understood_words
-from sk120stiff.measurements.importers.contract import Formats, Role, Sheet, Source
+from sk120stiff.measurements.importers.campaign.campaign import campaign_of
+from sk120stiff.measurements.importers.campaign.pose_of_file import with_poses
+from sk120stiff.measurements.importers.contract import Formats, Source
 from sk120stiff.measurements.importers.drafting import Draft, Written, drafted, paired_loads
 from sk120stiff.measurements.importers.formats.catalogue import FORMATS
-from sk120stiff.measurements.importers.formats.matlab import is_matlab, matlab_grid
-from sk120stiff.measurements.importers.formats.numpy_archive import is_numpy, numpy_grid
-from sk120stiff.measurements.importers.formats.robot_program import is_program, program_grid
-from sk120stiff.measurements.importers.formats.workbook import (
-    fitting_sheets,
-    is_workbook,
-    workbook_grid,
-)
 from sk120stiff.measurements.importers.formats.workbook_sheets import (
     named_sheets,
-    under_load,
-    without_used,
 )
 from sk120stiff.measurements.importers.holds.holds import as_repeats
 from sk120stiff.measurements.importers.holds.log import standstills
 from sk120stiff.measurements.importers.joint_units import blank_doubts, unit_doubts
-from sk120stiff.measurements.importers.layout.header_rows import in_one_row
-from sk120stiff.measurements.importers.layout.lost_readings import without_lost
-from sk120stiff.measurements.importers.layout.markers_in_rows import with_numbered_markers
-from sk120stiff.measurements.importers.layout.split_headers import with_whole_headers
 from sk120stiff.measurements.importers.loads.hung_masses import (
     doubts_of_names,
     refuse_other_files,
     say_masses,
-    with_mass,
     with_masses_of_all,
 )
-from sk120stiff.measurements.importers.loads.pairs import LOADS, unfolded
-from sk120stiff.measurements.importers.loads.told_mass import with_told_mass
+from sk120stiff.measurements.importers.one_file import FilesBeside, read_file
 from sk120stiff.measurements.importers.output import columns_for, settings_for, write_files
 from sk120stiff.measurements.importers.told import Mode, Told
 from sk120stiff.measurements.importers.tracker.frames import axes, placed
@@ -72,7 +51,6 @@ from sk120stiff.measurements.importers.tracker.positions_or_differences import (
     unless_apart,
 )
 from sk120stiff.measurements.importers.tracker.several_markers import (
-    of_marker,
     refuse_one_marker_twice,
     refuse_several_points,
     with_places,
@@ -180,21 +158,19 @@ def import_readings(
     paths = [path] if isinstance(path, str | os.PathLike) else path
     _refuse_beside_several(paths, before)
     of_sheets = named_sheets([sheet] if isinstance(sheet, str) else sheet or [])
-    files = {"before": before, "joints": joints_file, "loads": loads_file}
-    refuse_other_files([Path(one) for one in paths], told)
+    given = Source(
+        Path(paths[0]), robot.actuated, "points", tuple(columns) if columns else None,
+        of_sheets.get(""), topic, marker,
+    )  # fmt: skip
+    campaign = campaign_of(given, [Path(one) for one in paths], alone=before is not None)
+    refuse_other_files(campaign.names, told)
+    beside = FilesBeside(of_sheets, before, joints_file, loads_file)
     sheets = [
-        _sheet(
-            Source(
-                Path(one), robot.actuated, "points", tuple(columns) if columns else None,
-                of_sheets.get(""), topic, marker,
-            ),
-            formats, format_name, files, of_sheets, told, [Path(each).stem for each in paths],
-        )
-        for one in paths
-    ]  # fmt: skip
-    sheets = with_masses_of_all(sheets)
-    whole = sheets[0] if len(sheets) == 1 else joined(sheets)
-    whole = whole.noting(*say_masses(sheets))
+        read_file(source, formats, format_name, beside, told, campaign)
+        for source in campaign.sources
+    ]
+    sheets = with_poses(with_masses_of_all(sheets), campaign.labels, told)
+    whole = campaign.whole(sheets).noting(*say_masses(sheets))
     draft = drafted(whole, told, robot.actuated, prismatic)
     held = standstills(draft) or as_repeats(draft)
     if held is not None:
@@ -263,98 +239,6 @@ def _refuse_beside_several(paths: Sequence[object], before: Path | None) -> None
         )
     if not paths:
         raise InputError("no file is given", remedy="Give one file, or several of one campaign.")
-
-
-def _sheet(
-    source: Source,
-    formats: Formats,
-    name: str | None,
-    files: Mapping[str, Path | None],
-    sheets: Mapping[str, str],
-    told: Told,
-    beside: Sequence[str],
-) -> Sheet:
-    """The readings of a file, with those of the files beside it: before, joints, loads."""
-    before, book = files["before"], not source.path.is_dir() and is_workbook(source.data)
-    same = book and before is not None and before.resolve() == source.path.resolve()
-    if same:
-        source = dataclasses.replace(source, state=WITH)
-    whole = opened(source)
-    importer, why = formats.chosen(whole, name)
-    sheet = without_lost(importer.read(whole))
-    title = whole.grid.sheet if book else None
-    used = [title] if title else []
-    if why == "as told":
-        sheet = dataclasses.replace(sheet, title=importer.title, why=why)
-    if before is not None:
-        free = opened(dataclasses.replace(
-            source, path=before, sheet=sheets.get("before"), called="before",
-            state=WITHOUT if same else None, beside=title if same else None,
-        ))  # fmt: skip
-        used += [free.given.sheet] if same and free.given and free.given.sheet else []
-        sheet = with_before(sheet, without_lost(formats.chosen(free, name)[0].read(free)), told)
-    if files["loads"] is None or told.payloads:
-        sheet = with_mass(sheet, told, beside)
-    roles: tuple[Role, Role] = ("joints", "loads")
-    for role in roles:
-        path = files[role]
-        if path is None and book and _is_elsewhere(sheet, role, source, sheets, used, told):
-            path = source.path  # another sheet of the workbook holds them
-        if path is None:
-            continue
-        more = opened(Source(path, source.actuated, role, sheet=sheets.get(role), called=role))
-        if path == source.path and more.given and more.given.sheet:
-            used.append(more.given.sheet)
-        sheet = paired(
-            sheet, formats.chosen(more)[0].read(more), role,
-            by_clock=True, alone=len(beside) == 1, dates=told.dates,
-        )  # fmt: skip
-    sheet = understood_words(of_marker(sheet, source.marker), told)
-    sheet = named(unfolded(with_told_mass(sheet, told)))
-    if book:
-        sheet = without_used(sheet, source.path, used)
-    if under_load(title) and not sheet.those(*LOADS):
-        said = (
-            f"By its name the sheet {title} is under a load, and no column says which: it is taken "
-            "to be without. Give --loads-file, or a column fx[N], fy[N], fz[N] or payload[kg]."
-        )
-        sheet = dataclasses.replace(sheet, doubts=(*sheet.doubts, said))
-    return sheet
-
-
-def _is_elsewhere(
-    sheet: Sheet,
-    role: Role,
-    source: Source,
-    sheets: Mapping[str, str],
-    used: Sequence[str],
-    told: Told,
-) -> bool:
-    """Are joints or loads, which these readings lack, in another sheet of their workbook?
-
-    Loads only where the readings are under one by the name of their sheet, or were told to be.
-    """
-    if role in sheets:
-        return True
-    if role == "joints":
-        return not any(c.meaning.startswith("joint ") for c in sheet.columns)
-    pushed = under_load(used[0]) if used else False
-    if told.wrench is not None or not pushed or sheet.those(*LOADS):
-        return False
-    return len(fitting_sheets(Source(source.path, source.actuated, role))) == 1
-
-
-def opened(source: Source) -> Source:
-    """The source with its rows, where a workbook, MATLAB, numpy or a robot's program holds them."""
-    if is_workbook(source.data):
-        source = dataclasses.replace(source, given=workbook_grid(source))
-    elif is_matlab(source.data):
-        source = dataclasses.replace(source, given=matlab_grid(source))
-    elif is_numpy(source.data):
-        source = dataclasses.replace(source, given=numpy_grid(source))
-    elif is_program(source):
-        source = dataclasses.replace(source, given=program_grid(source))
-    return with_numbered_markers(in_one_row(with_whole_headers(source)))
 
 
 def _assembled(

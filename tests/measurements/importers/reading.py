@@ -5,7 +5,7 @@ from typing import Any
 
 from sk120stiff.measurements.importers import FORMATS, Sheet, Source, Told
 from sk120stiff.measurements.importers.drafting import Draft, drafted
-from sk120stiff.measurements.importers.run import opened
+from sk120stiff.measurements.importers.one_file import opened
 
 SIX = tuple(f"joint_{k}" for k in range(1, 7))
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from sk120stiff.measurements.importers.contract import Column, Sheet
+from sk120stiff.measurements.importers.contract import FILE, Column, Sheet
 
 SHARED = 0.5  # of the names of the shorter file, from which on names decide
 _COUNTED = re.compile(r"(?P<word>.*?)[\s_.\-#:]*(?P<number>\d+)(?:\.0+)?")
@@ -56,8 +56,11 @@ def label_of(sheet: Sheet) -> Column | None:
 
 
 def labels_of(sheet: Sheet) -> list[Column]:
-    """The columns of names and of poses, the latter if every row has one."""
+    """The columns of names and of poses, the latter if every row has one; where the name of the
+    file told the pose, that alone: names of its rows may be those of other poses' rows, too."""
     pose = sheet.get("pose")
+    if pose is not None and pose.header == FILE:
+        return [pose]
     return [*sheet.those("name"), *([pose] if pose is not None and all(pose.cells) else [])]
 
 

@@ -9,7 +9,7 @@ from sk120stiff.measurements.importers.campaign.by_label import by_label, label_
 from sk120stiff.measurements.importers.campaign.by_time import ByTime, by_time, clock_of
 from sk120stiff.measurements.importers.campaign.in_turn import in_turn
 from sk120stiff.measurements.importers.clock import DateOrder
-from sk120stiff.measurements.importers.contract import Column, Sheet, Unpaired
+from sk120stiff.measurements.importers.contract import FILE, Column, Sheet, Unpaired
 
 NAME, TIME, ORDER = "name", "time", "order"
 
@@ -59,11 +59,12 @@ def paired(
                 f"neither names nor times tell which rows of {what} belong to which of several "
                 f"files.{untold}".removesuffix("."),
                 where=f"{points.path} and {other.path}",
-                remedy="Give all files a column of names, those of the points. If they are the "
-                "same poses without and with a load, give the file without as --before FILE, and "
-                "the other alone; if each holds one marker at the same poses, row by row, put them "
-                "side by side in one file, x1 y1 z1 x2 y2 z2. Else import them one by one, each "
-                "with a file of its own.",
+                remedy="Give all files a column of names, those of the points, or the file of "
+                f"{what} a column pose with the numbers in the names of the others. If they are "
+                "the same poses without and with a load, give the file without as --before FILE, "
+                "and the other alone; if each holds one marker at the same poses, row by row, put "
+                "them side by side in one file, x1 y1 z1 x2 y2 z2. Else import them one by one, "
+                "each with a file of its own.",
             )
         turned = in_turn(points, other.total)
         points = turned or points
@@ -136,9 +137,10 @@ def _by_name(points: Sheet, other: Sheet, what: str) -> _Pairs | None:
         for key, k in place.items()
         if key not in found.shared
     ]
-    headers = f"{found.mine.header}, {found.theirs.header}"
+    of_file = found.mine.header == FILE
+    headers = f"{found.mine.stated if of_file else found.mine.header}, {found.theirs.header}"
     first = found.mine.cells[rows[0]], found.theirs.cells[place[found.keys[rows[0]]]]
-    example = f", as {first[0]} and {first[1]}" if first[0] != first[1] else ""
+    example = f", as {first[0]} and {first[1]}" if first[0] != first[1] and not of_file else ""
     how = f"{NAME} ({headers}{f'; {found.how}{example}' if found.how else ''})"
     return _Pairs(rows, [place[found.keys[k]] for k in rows], how, left, (found.mine, found.theirs))
 

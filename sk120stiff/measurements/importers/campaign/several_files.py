@@ -9,6 +9,7 @@ from pathlib import Path
 
 from sk120stiff.errors import InputError, listed
 from sk120stiff.measurements.importers.campaign.by_label import SHARED, label_of
+from sk120stiff.measurements.importers.campaign.pose_of_file import of_names
 from sk120stiff.measurements.importers.contract import FILE, Column, Sheet, Unpaired
 from sk120stiff.measurements.importers.loads.pairs import LOADS
 
@@ -17,10 +18,11 @@ SHOWN = 4  # files that are told by name
 _ANEW = ("order", "time")  # which begin anew in every file, or not
 
 
-def joined(sheets: Sequence[Sheet]) -> Sheet:
+def joined(sheets: Sequence[Sheet], what: str = "files") -> Sheet:
     """The rows of all of them, with a column of where the tracker stood that names the files.
 
-    Lines count on through the files, as if they had been appended to one another.
+    Lines count on through the files, as if they had been appended to one another. They are called
+    `what`.
 
     Raises:
         InputError: They do not hold the same columns in the same units.
@@ -31,7 +33,7 @@ def joined(sheets: Sequence[Sheet]) -> Sheet:
     columns, said = [], []
     for column in first.columns:
         cells = [own.cells for own in _same(column, sheets)]
-        if column.meaning in LABELS:
+        if column.meaning in LABELS and not of_names(column):
             cells = _apart(cells, labels)
         elif column.meaning in _ANEW and not _goes_on(cells):
             said.append(f"The column {column.header} begins anew in every file and is left out.")
@@ -44,7 +46,7 @@ def joined(sheets: Sequence[Sheet]) -> Sheet:
     ranks = [0, *accumulate(sheet.total for sheet in sheets)]
     begins = [f"{s.path.name} at {n + 1}" for s, n in zip(sheets[1:], starts[1:], strict=False)]
     more = [sheet.path.name for sheet in sheets[1:]]
-    beside = listed(more) if len(more) <= SHOWN else f"{len(more)} more files"
+    beside = listed(more) if len(more) <= SHOWN else f"{len(more)} more {what}"
     return replace(
         first,
         title=f"{first.title}, with {beside}",
@@ -66,13 +68,26 @@ def joined(sheets: Sequence[Sheet]) -> Sheet:
         doubts=tuple(dict.fromkeys([*(d for s in sheets for d in s.doubts), *_the_same(sheets)])),
         unused=tuple(dict.fromkeys(item for sheet in sheets for item in sheet.unused)),
         notes=(
-            *dict.fromkeys(note for sheet in sheets for note in sheet.notes),
-            f"{len(sheets)} files are one campaign. Lines count on: "
+            *_said_once(sheets),
+            f"{len(sheets)} {what} are one campaign. Lines count on: "
             + listed(begins[:SHOWN] + ["so on"] * (len(begins) > SHOWN))
             + ".",
             *said,
         ),
     )
+
+
+def _said_once(sheets: Sequence[Sheet]) -> list[str]:
+    """What was decided of each, and of how many more the same."""
+    said: dict[str, list[str]] = {}
+    for sheet in sheets:
+        for note in sheet.notes:
+            own = f" of {sheet.path.name} "
+            said.setdefault(note.replace(own, "\0", 1), []).append(note)
+    return [
+        f"{each[0]} So of {len(each) - 1} more." if "\0" in key and len(each) > 1 else each[0]
+        for key, each in said.items()
+    ]
 
 
 def _the_same(sheets: Sequence[Sheet]) -> list[str]:

@@ -65,3 +65,9 @@ def _without_accents(plain: str) -> str:
     ring = plain.replace("º", "°").replace("ª", "")
     apart = unicodedata.normalize("NFKD", ring).lower()
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
+
+
+def says_pose(word: str) -> bool:
+    """Does one word in small letters, before a number, call a pose or a point?"""
+    plain = _without_accents(word)
+    return plain == "p" or any(re.fullmatch(nouns, plain) for nouns in (_POSE, _POINT, _MAYBE))

@@ -95,8 +95,9 @@ def _begin_of(labels: Sequence[str]) -> str:
 
 
 def _end_of(labels: Sequence[str]) -> str:
-    """What labels end with behind a mark; empty without one."""
+    """What labels end with behind a mark, or behind the names of their files; empty without one."""
     end = _begin([label[::-1] for label in labels])[::-1]
+    end = end[end.rfind("/") :] if "/" in end else end
     first = next((k for k, letter in enumerate(end) if letter in _MARKS), len(end))
     return end[first:].lstrip(_MARKS)
 

@@ -33,7 +33,7 @@ FEWEST = 3  # columns that the lower row, alone or with the upper one, names at 
 SHORTEST = 3  # letters of a word above x y z; fewer may be the name of a marker, if no unit follows
 _MARKERS = ("nominal x", "measured x", "tcp x")  # words such as Target, Tracker, Tool: markers, too
 _NO_GROUP = ("x", "orientation x", "qx", "tx")
-_OF_JOINTS = re.compile(
+OF_JOINTS = re.compile(  # a word above 1 2 3 ..., or before the values of joints
     r"(?:robot )?(?:joint|axis|axes|gelenk|achs|axe|assi|giunt|eje|articula|junta|eixo|关节|轴)",
     re.IGNORECASE,
 )
@@ -49,6 +49,8 @@ def in_one_row(source: Source) -> Source:
     grid = source.unnamed_grid
     if grid is None:
         return source
+    grid = _of_sheet(grid, len(source.actuated))
+    source = source if grid is source.grid else dataclasses.replace(source, given=grid)
     for k in range(1, min(SEARCHED, len(grid.rows))):
         if _worded(grid.rows[k - 1]):
             grid = _with_joints(grid, k)
@@ -59,11 +61,22 @@ def in_one_row(source: Source) -> Source:
     return source
 
 
+def _of_sheet(grid: Grid, joints: int) -> Grid:
+    """The grid with a first row of 1 2 3 ... as J1 J2 J3 ..., where the sheet is called Joints."""
+    first = grid.rows[0] if grid.rows else ()
+    numbers = [cell for cell in first if is_number(cell)]
+    counted = numbers == [str(k + 1) for k in range(joints)]
+    if not (grid.sheet and OF_JOINTS.match(grid.sheet) and counted):
+        return grid
+    named = tuple(f"J{cell}" if is_number(cell) else cell for cell in first)
+    return dataclasses.replace(grid, rows=(named, *grid.rows[1:]))
+
+
 def _with_joints(grid: Grid, at: int) -> Grid:
     """The grid with 1 2 3 ... below a word for joints as J1 J2 J3 ...; as it is without such."""
     upper, lower = grid.rows[at - 1], grid.rows[at]
     above = _spread(upper, lower)
-    counts = [k for k, cell in enumerate(lower) if cell.isdigit() and _OF_JOINTS.match(above[k])]
+    counts = [k for k, cell in enumerate(lower) if cell.isdigit() and OF_JOINTS.match(above[k])]
     numbers = [int(lower[k]) for k in counts]
     begins = numbers[:1] in ([0], [1]) and len(numbers) > 1
     if not begins or numbers != list(range(numbers[0], numbers[0] + len(numbers))):

@@ -107,3 +107,33 @@ def test_two_sheets_for_one_purpose_are_refused() -> None:
 )  # fmt: skip
 def test_names_that_say_under_load(title: str | None, loaded: bool) -> None:
     assert under_load(title) is loaded
+
+
+def test_a_sheet_of_joints_whose_positions_are_the_robots_own_is_named(tmp_path: Path) -> None:
+    book = workbook(tmp_path / "all.xlsx", free="Readings (mm)", q="Robot (deg)")
+    made = openpyxl.load_workbook(book)
+    for column, axis in enumerate("XYZ", 8):
+        made["Robot (deg)"].cell(1, column).value = f"{axis} [mm]"
+        for row in range(2, 16):
+            made["Robot (deg)"].cell(row, column).value = 1.0
+    made.save(book)
+    names = r"--sheet 'Readings \(mm\)' --sheet 'joints=Robot \(deg\)'"
+    with pytest.raises(InputError, match=names):
+        brought(book)
+    found = brought(book, sheet=["Readings (mm)", "joints=Robot (deg)"])
+    assert found.fitted is not None and found.fitted.rms < 3e-3
+
+
+def test_joints_in_a_sheet_of_that_name_may_be_numbered(tmp_path: Path) -> None:
+    book = workbook(tmp_path / "all.xlsx", free="Readings (mm)", q="Gelenke (deg)")
+    made = openpyxl.load_workbook(book)
+    for k in range(1, 7):
+        made["Gelenke (deg)"].cell(1, k + 1).value = k
+    made.save(book)
+    assert brought(book).fitted is not None
+
+
+def test_without_joints_the_sheets_that_may_have_them_are_named(tmp_path: Path) -> None:
+    book = workbook(tmp_path / "all.xlsx", free="Readings (mm)", force="Force (N)")
+    with pytest.raises(InputError, match=r"Info and Force \(N\)\).*--sheet 'joints=Info'"):
+        brought(book)

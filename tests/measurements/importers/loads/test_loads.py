@@ -9,7 +9,7 @@ from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers import FORMATS, Source
 from sk120stiff.measurements.importers.campaign.pairing import paired
 from sk120stiff.measurements.importers.loads.loads import loads_of
-from sk120stiff.measurements.importers.run import opened
+from sk120stiff.measurements.importers.one_file import opened
 from sk120stiff.measurements.importers.told import Told
 from tests.measurements.importers.reading import SIX, draft_of, sheet_of
 

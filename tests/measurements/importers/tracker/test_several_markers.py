@@ -7,7 +7,7 @@ import pytest
 
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.importers import FORMATS, Source
-from sk120stiff.measurements.importers.run import opened
+from sk120stiff.measurements.importers.one_file import opened
 from sk120stiff.measurements.importers.told import Told
 from sk120stiff.measurements.importers.tracker.several_markers import (
     of_marker,
