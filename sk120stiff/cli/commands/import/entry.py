@@ -10,7 +10,7 @@ import typer
 
 from sk120stiff.arrays import Array
 from sk120stiff.cli.frame import Answer, ahead
-from sk120stiff.cli.opening import declare_readings, open_robot, wrench_of
+from sk120stiff.cli.opening import declare_readings, wrench_of
 from sk120stiff.cli.options import BaseOption, ToolOption
 from sk120stiff.cli.tables import progress_bar
 from sk120stiff.errors import InputError, warn
@@ -18,6 +18,7 @@ from sk120stiff.measurements.importers import Told, import_readings
 from sk120stiff.measurements.importers.loads.masses_in_words import mass_told
 from sk120stiff.units import parse_values
 
+from .arm import naming, open_arm
 from .preview import document_of, doubts_of, preview_of
 
 
@@ -166,7 +167,8 @@ def command(
         )
     if not preview:
         declare_readings(out)
-    arm = open_robot(robot, base, tool)
+    beside = [file for file in (joints_file, loads_file) if file is not None]
+    arm, arms = open_arm(robot, base, tool, [*sources, *beside])
     one, several = _places(point or [])
     told = Told(
         length=length,
@@ -187,7 +189,7 @@ def command(
         else parse_values(forces_rpy, "angle", where="--forces-rpy", like="0,0,45 deg"),
         dates=None if dates is None else dates.value,
     )
-    with progress_bar("Reading the file and placing the arm"):
+    with naming(arms), progress_bar("Reading the file and placing the arm"):
         found = import_readings(
             sources,
             arm,
