@@ -7,6 +7,7 @@ joints with all numbers behind it.
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Sequence
 
 from sk120stiff.measurements.importers.columns.words import is_unit, meaning_of, unit_of_header
@@ -17,6 +18,11 @@ from sk120stiff.measurements.importers.layout.layout import Layout, layout_of
 
 Row = tuple[str, ...]
 Cells = list[tuple[str, str]]  # header and number of each joint, in their order
+_OTHER = re.compile(  # what else is told of joints above a table
+    r"limit|grenz|range|bereich|min(?![a-z])|max|home|start|ratio|[üu]bersetzung|gear|offset|zero|null|"
+    r"speed|vel|torque|moment|stiff|steif|toleran|resol|backlash|spiel|encoder|target|command|cmd|soll",
+    re.IGNORECASE,
+)
 NONE: tuple[Cells, range] = ([], range(0))
 
 
@@ -41,7 +47,11 @@ def with_joints_above(source: Source) -> Source:
         *(_behind_word(above, k, n) for k in range(at)),
         _side_by_side(above, source.actuated),
     )
-    found = [(cells, rows) for cells, rows in ways if len(cells) == n]
+    found = [
+        (cells, rows)
+        for cells, rows in ways
+        if len(cells) == n and not any(_OTHER.search(c) for k in rows for c in above[k])
+    ]
     if len(found) != 1:
         return source
     return dataclasses.replace(source, given=_widened(grid, at, width, *found[0]))

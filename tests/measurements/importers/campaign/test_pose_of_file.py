@@ -159,6 +159,19 @@ def test_two_sets_of_joints_above_are_not_chosen_from(tmp_path: Path) -> None:
         brought(written(tmp_path / "a.csv", rows))
 
 
+@pytest.mark.parametrize(
+    "above",
+    [
+        [["Joint limits [deg]", *joints(0)]],
+        [["", *JOINTS], ["Gear ratio", *joints(0)]],
+        [["Home position", *JOINTS], ["", *joints(0)]],
+    ],
+)
+def test_what_else_is_told_of_joints_above_a_table(tmp_path: Path, above: Rows) -> None:
+    with pytest.raises(InputError, match="holds no joint values"):
+        brought(written(tmp_path / "a.csv", [*above, READINGS, *readings(0)]))
+
+
 def test_joints_above_are_not_those_of_several_poses(tmp_path: Path) -> None:
     """As of the place where the arm began, above a table whose joints are in another file."""
     rows: Rows = [[f"P{k + 1}", *row] for k in range(12) for row in readings(k)]
