@@ -98,8 +98,10 @@ def read_file(
         if path == source.path and more.given and more.given.sheet:
             used.append(more.given.sheet)
         other = formats.chosen(more)[0].read(more)
+        if len(beside) > 1:
+            sheet = with_label(sheet, label, other)
         sheet = paired(
-            with_label(sheet, label, other), other, role,
+            sheet, other, role,
             by_clock=True, alone=len(beside) == 1, dates=told.dates,
         )  # fmt: skip
     sheet = understood_words(of_marker(sheet, source.marker), told)

@@ -14,7 +14,7 @@ from itertools import product
 from sk120stiff.measurements.importers.contract import FILE, Column, Sheet
 
 SHARED = 0.5  # of the names of the shorter file, from which on names decide
-_COUNTED = re.compile(r"(?P<word>.*?)[\s_.\-#:]*(?P<number>\d+)(?:\.0+)?")
+_COUNTED = re.compile(r"(?P<word>.*?)[\s_.\-#:]*(?P<number>\d+)(?:\.0+|\.[A-Za-z]\w{1,4})?")
 Keys = tuple[str, ...] | None  # what is compared instead of labels; None where they have none such
 
 _Comparison = Callable[[tuple[str, ...], tuple[str, ...]], tuple[Keys, Keys]]

@@ -22,13 +22,20 @@ _NUMBER = re.compile(r"\d+")
 
 
 def with_label(sheet: Sheet, label: NameLabel | None, other: Sheet) -> Sheet:
-    """The rows of one file with the pose that its name tells, where another file has that pose.
+    """The rows of one file with the pose that its name tells, where another file has that pose, or
+    names this file.
 
     Without a word for a pose in the names, the numbers of all files have to be those of the poses.
     """
-    if label is None or sheet.get("pose") is not None:
+    if sheet.get("pose") is not None:
         return sheet
     for column in labels_of(other):
+        called = [each for each in (sheet.path.name, sheet.path.stem) if each in column.cells]
+        if called:
+            name = frozenset(called[:1])
+            return _labelled(sheet, NameLabel(called[0], name, said=True, stated=OF_FILES))
+        if label is None:
+            continue
         theirs = set(column.cells)
         if label.text in theirs and (label.said or label.others == theirs):
             return _labelled(sheet, label)

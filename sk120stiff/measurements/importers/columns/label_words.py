@@ -27,7 +27,8 @@ _POSE = (
 _MAYBE = (  # a label where no other column is one: each is a word for other things, too
     "position|positions|pos|posicao|posicion|posizione|pozice|pozycja|позиция|configuration|config|"
     "conf|konfiguration|configuracion|configurazione|configuracao|measurement|messung|mesure|"
-    "misura|medida|medicion|medicao|test|versuch|essai|prova|ensayo|ensaio|trial|experiment"
+    "misura|medida|medicion|medicao|test|versuch|essai|prova|ensayo|ensaio|trial|experiment|"
+    "file|file ?name|datei|dateiname|fichier|archivo|arquivo|nome file|sheet|blatt"
 )
 
 

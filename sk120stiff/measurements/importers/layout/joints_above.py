@@ -1,7 +1,7 @@
 """Joint values that stand once above a table, in a few cells: they hold for all rows below.
 
-Three ways: names with the numbers below them, a name and its number side by side, or one word for
-joints with all numbers behind it.
+Four ways: names with the numbers below them, a name and its number side by side, or one word for
+joints with all numbers behind it, in cells of their own or in one.
 """
 
 from __future__ import annotations
@@ -22,6 +22,11 @@ _OTHER = re.compile(  # what else is told of joints above a table
     r"limit|grenz|range|bereich|min(?![a-z])|max|home|start|ratio|[üu]bersetzung|gear|offset|zero|null|"
     r"speed|vel|torque|moment|stiff|steif|toleran|resol|backlash|spiel|encoder|target|command|cmd|soll",
     re.IGNORECASE,
+)
+_NUMBER = r"[-+]?\d+(?:\.\d+)?"
+_ONE_CELL = re.compile(
+    r"(?P<word>[^\W\d][^\d=:\[(]*?)\s*(?P<stated>[\[(][^\W\d]\w*[\])]|[\[(]°[\])])?\s*[=:]?\s*[\[(]?"
+    rf"(?P<numbers>{_NUMBER}(?:(?:\s*[,;]\s*|\s+){_NUMBER})+)\s*[\])]?\s*(?P<unit>[^\d,;]*)"
 )
 NONE: tuple[Cells, range] = ([], range(0))
 
@@ -45,6 +50,7 @@ def with_joints_above(source: Source) -> Source:
     ways = (
         *(_below(above, k, source.actuated) for k in range(at - 1)),
         *(_behind_word(above, k, n) for k in range(at)),
+        *(_in_one_cell(above, k, n) for k in range(at)),
         _side_by_side(above, source.actuated),
     )
     found = [
@@ -125,6 +131,20 @@ def _behind_word(above: Sequence[Row], at: int, n: int) -> tuple[Cells, range]:
         return NONE
     unit = unit_of_header(cells[0])[1]
     named = [(f"J{k} [{unit}]" if unit else f"J{k}", cell) for k, cell in enumerate(cells[1:], 1)]
+    return named, range(at, at + 1)
+
+
+def _in_one_cell(above: Sequence[Row], at: int, n: int) -> tuple[Cells, range]:
+    """``q = [10, -20.5, ...] deg`` or ``Joint angles [deg]: 10; -20.5; ...``."""
+    cells = [cell for cell in above[at] if cell]
+    found = _ONE_CELL.fullmatch(cells[0]) if len(cells) == 1 else None
+    if not found or not (OF_JOINTS.match(found["word"]) or found["word"].lower() in ("q", "j")):
+        return NONE
+    numbers = re.split(r"[,;\s]+", found["numbers"].strip())
+    unit = found["unit"].strip("[]() ") or unit_of_header(f"{found['word']} {found['stated']}")[1]
+    if len(numbers) != n or (unit and not is_unit(unit)):
+        return NONE
+    named = [(f"J{k} [{unit}]" if unit else f"J{k}", cell) for k, cell in enumerate(numbers, 1)]
     return named, range(at, at + 1)
 
 

@@ -99,6 +99,19 @@ def test_their_joints_in_another_file(tmp_path: Path, name: str, label: str) -> 
     assert said(found, "So of 11 more.")
 
 
+@pytest.mark.parametrize("names", [[f"a{k}" for k in range(12)], list("kqwertzuiopa")])
+@pytest.mark.parametrize("ending", ["", ".csv"])
+def test_a_table_of_joints_that_names_the_files(
+    tmp_path: Path, names: list[str], ending: str
+) -> None:
+    paths = [
+        written(tmp_path / f"{name}.csv", [READINGS, *readings(k)]) for k, name in enumerate(names)
+    ]
+    rows = joint_table([f"{name}{ending}" for name in names])
+    other = written(tmp_path / "joints.csv", [["File", *rows[0][1:]], *rows[1:]])
+    assert brought(paths, other).draft.pose[::2] == tuple(f"{name}{ending}" for name in names)
+
+
 def test_files_of_other_numbers_are_of_no_pose_of_the_joints(tmp_path: Path) -> None:
     """Two scans are not the first two of twelve poses."""
     paths = [written(tmp_path / f"scan{k + 1}.csv", [READINGS, *readings(k)]) for k in range(2)]
@@ -136,6 +149,12 @@ ABOVE: dict[str, list[Rows]] = {
     ],
     "each with its unit": [
         [[f"q{j}", value, "deg"] for j, value in enumerate(joints(k), 1)] for k in range(12)
+    ],
+    "in one cell": [
+        [[f"q = [{', '.join(f'{v:.9f}' for v in SEEN.q[k])}] deg"]] for k in range(12)
+    ],
+    "in one cell behind words": [
+        [[f"Joint angles (deg): {'; '.join(f'{v:.9f}' for v in SEEN.q[k])}"]] for k in range(12)
     ],
     "in one line": [
         [[cell for pair in zip(JOINTS, joints(k), strict=True) for cell in pair]] for k in range(12)
