@@ -76,12 +76,12 @@ def by_label(points: Sheet, other: Sheet) -> ByLabel | None:
         numbered = _best(own, theirs, _numbers, "by their numbers")
         inside = numbered is not None and set(numbered.keys) <= set(numbered.other_keys)
         found = numbered if inside else found
-    if found is None and not (own and theirs):
+    if found is None or found.agreeing[1] < len(found.keys):
         unknown = [
-            _best(own or points.spare, theirs or other.spare, keys, how)
+            _best([*own, *points.spare], [*theirs, *other.spare], keys, how)
             for keys, how in ((_letters, "by what they hold"), (_numbers, "by their numbers"))
         ]
-        found = next((each for each in unknown if each and _is_same(each)), None)
+        found = next((each for each in unknown if each and _is_same(each)), found)
     return found
 
 

@@ -71,8 +71,8 @@ def paired(
         times = 1 if turned is None else points.total // other.total
         found = _by_order(points, other, what, untold, times)
     rows, others = found.rows, found.others
-    if found.labels and any(found.labels[0] is c for c in points.spare):  # its header is unknown
-        points = points.exchanged([found.labels[0]], replace(found.labels[0], meaning=NAME))
+    if found.labels and any(found.labels[0] is c for c in points.spare):
+        points = _named_by(points, found.labels[0])
     lost = list(points.skipped)
     if found.how.startswith(ORDER):
         lost += [(line, f"{reason} ({other.path.name})") for line, reason in other.skipped]
@@ -106,6 +106,13 @@ def paired(
             *(f"{other.path.name}: {n[0].lower()}{n[1:]}" for n in other.notes),
         ),
     )
+
+
+def _named_by(points: Sheet, label: Column) -> Sheet:
+    """The points with a column of unknown header as their names; those so far count rows, say."""
+    others = points.those(NAME)
+    made = points.exchanged([label, *others], replace(label, meaning=NAME))
+    return replace(made, spare=(*made.spare, *(replace(c, meaning="") for c in others)))
 
 
 def _by_name(points: Sheet, other: Sheet, what: str) -> _Pairs | None:

@@ -38,6 +38,7 @@ def _named(nouns: str) -> re.Pattern[str]:
 
 
 _SURE = {"pose": _named(_POSE), "name": re.compile(f"{_named(_POINT).pattern}|{_NUMBER}")}
+_COUNT = re.compile(_NUMBER)
 _OPEN = _named(_MAYBE)
 
 
@@ -49,16 +50,24 @@ def label_of_word(plain: str) -> str | None:
 
 def with_labels(names: Sequence[str], meanings: Meanings, units: Sequence[str | None]) -> Meanings:
     """Meanings with a column called Position, Configuration or Test as the names of rows, where no
-    other column has these, and without a unit: what has one was measured."""
+    other column has these, and without a unit: what has one was measured. A column that counts
+    alone (Nr) beside one that names points (Messpunkt) counts rows, and is no label."""
     out = list(meanings)
+    named = [k for k, known in enumerate(out) if known and known[0] == "name"]
+    counts = [k for k in named if _COUNT.fullmatch(_plain(names[k]))]
+    if len(counts) < len(named):
+        out = [None if k in counts else known for k, known in enumerate(out)]
     if any(known and known[0] in ("name", "pose") for known in out):
         return out
     for k, name in enumerate(names):
-        plain = re.sub(r"[\s_.\-:()\[\],]+", " ", name).strip().lower()
-        if out[k] is None and units[k] is None and _OPEN.fullmatch(_without_accents(plain)):
+        if out[k] is None and units[k] is None and _OPEN.fullmatch(_plain(name)):
             out[k] = "name", 1.0
             break
     return out
+
+
+def _plain(name: str) -> str:
+    return _without_accents(re.sub(r"[\s_.\-:()\[\],]+", " ", name).strip().lower())
 
 
 def _without_accents(plain: str) -> str:

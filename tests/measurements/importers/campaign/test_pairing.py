@@ -96,9 +96,12 @@ def test_labels_that_are_written_otherwise(
     assert how in " ".join(found.notes)
 
 
-def test_of_two_columns_of_labels_that_counts_which_the_other_file_has(tmp_path: Path) -> None:
+@pytest.mark.parametrize("headers", ["Nr,Pose", "Nr,Punto", "Nr,Config", "Index,Bodíček"])
+def test_of_two_columns_of_labels_that_counts_which_the_other_file_has(
+    tmp_path: Path, headers: str
+) -> None:
     """A count of rows agrees with some of the poses' numbers by chance."""
-    text = "Nr,Pose,x[mm],y[mm],z[mm]\n" + "".join(
+    text = f"{headers},x[mm],y[mm],z[mm]\n" + "".join(
         f"{k + 1},{k // 2 + 1},{k},0,0\n" for k in range(6)
     )
     found = paired(sheet_of(tmp_path, text), joints(tmp_path, "321"), "joints")

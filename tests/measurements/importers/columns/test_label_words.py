@@ -50,3 +50,14 @@ def test_a_number_sign_above_a_column_begins_no_comment(tmp_path: Path) -> None:
     sheet = sheet_of(tmp_path, "#,X [mm],Y [mm],Z [mm]\n1,1,2,3\n2,4,5,6\n")
     column = sheet.get("name")
     assert column is not None and column.cells == ("1", "2")
+
+
+def test_what_counts_rows_is_no_label_beside_what_names_points() -> None:
+    def meanings(*headers: str) -> list[tuple[str, float] | None]:
+        known = [meaning_of(header) for header in headers]
+        return with_labels(headers, known, [None] * len(headers))
+
+    name = ("name", 1.0)
+    assert meanings("Nr", "Messpunkt", "x") == [None, name, ("x", 1.0)]
+    assert meanings("Nr", "x") == [name, ("x", 1.0)]
+    assert meanings("Nr", "Pose") == [name, ("pose", 1.0)]
