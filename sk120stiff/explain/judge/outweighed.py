@@ -1,9 +1,10 @@
 """Does a name explain less than what remains without one?
 
 A cause that the catalogue lacks shows best in the effect that comes nearest to it, and seldom for
-more than half of its own size. So where something structured remains that is larger than what a
-name takes off, the name may as well imitate part of that. What no structure bears out, a σ that was
-stated too small, is not held against a name.
+more than half of its own size; a law of a gear stands for more of another memory of the same gear.
+So where something structured remains beside which a name takes off no more than that, the name may
+as well imitate part of it. What no structure bears out, a σ that was stated too small, is not held
+against a name; nor is what every arm has beyond its laws, be it as large as the name's own part.
 """
 
 from __future__ import annotations
@@ -11,12 +12,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from sk120stiff.effects import Effect
 from sk120stiff.errors import Refusal, short
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.solving import against_noise_alone
+
+# Of its own size, what a cause without a name shows in the nearest effect: at most, and where both
+# are of one gear; there what is left must be the smaller part.
+HALF, ALL = 0.5, 0.5**0.5
 
 
 def outweighed(found: Selection, names: Sequence[Effect]) -> tuple[str, str] | None:
@@ -38,7 +45,8 @@ def outweighed(found: Selection, names: Sequence[Effect]) -> tuple[str, str] | N
         return None
     for k in reversed(range(len(names))):
         taken = max(squares[k] - squares[k + 1], 0.0) ** 0.5
-        if taken < left.rms:
+        most = ALL if names[k].of_gear else HALF
+        if taken < most * float(np.hypot(taken, left.rms)):
             return names[k].id, (
                 f"{names[k].id} fits, but takes off {short(1e6 * taken)} µm where "
                 f"{short(1e6 * left.rms)} µm remain without a name; it may imitate part of that "
