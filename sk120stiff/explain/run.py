@@ -32,7 +32,13 @@ from sk120stiff.explain.judge.remainder import Remainder, remainder_of
 from sk120stiff.explain.judge.rigid_gears import held_rigid, without_rigid_gears
 from sk120stiff.explain.judge.selection_uncertainty import with_selection_uncertainty
 from sk120stiff.explain.judge.soft_parts import with_soft_parts
-from sk120stiff.explain.judge.steps import foretold_beside, foretold_on_file, gap_steps
+from sk120stiff.explain.judge.steps import (
+    foretold_beside,
+    foretold_on_file,
+    gap_steps,
+    on_poses_left_out,
+)
+from sk120stiff.explain.localise.changes import changed_at
 from sk120stiff.explain.localise.places import localise
 from sk120stiff.explain.localise.words import where_sentences
 from sk120stiff.explain.options import Options, candidates_for, with_assumed
@@ -185,7 +191,8 @@ def explain_displacements(
         foretold = _worth_of_the_suspect(
             account, found, effects, holdout, steps[-1].heldout_rms, options.seed
         )
-        remainder = replace(remainder, goes_with=replace(account.goes_with(), foretold=foretold))
+        shown = replace(account.goes_with(remainder.rms), foretold=foretold)
+        remainder = replace(remainder, goes_with=shown)
     if remainder.significant:
         remainder = replace(remainder, shows=(*remainder.shows, *left.of_time))
     turned = axes_of_joint_angles(base)
@@ -261,11 +268,16 @@ def _worth_of_the_suspect(
     without: float,
     seed: int,
 ) -> Foretold | None:
-    """How much nearer other poses are foretold with it."""
+    """How much nearer other poses are foretold with it.
+
+    A hold-out file, measured at another time, says nothing of what changed on the way.
+    """
     beside = account.beside
-    if holdout is None:
-        return foretold_beside(beside, len(effects), without, seed=seed)
-    return foretold_on_file(found, beside, account.suspect, effects, holdout, without)
+    if holdout is not None and changed_at(account.suspect) is None:
+        return foretold_on_file(found, beside, account.suspect, effects, holdout, without)
+    if holdout is not None:
+        without = on_poses_left_out(found, [len(effects)], seed)[0]
+    return foretold_beside(beside, len(effects), without, seed=seed)
 
 
 def _together(found: Selection, named: Named, account: Account | None) -> tuple[Imitated, ...]:

@@ -18,6 +18,7 @@ from sk120stiff.explain.localise.words import microns
 
 if TYPE_CHECKING:
     from sk120stiff.explain.answer.explanation import Explanation
+    from sk120stiff.explain.judge.goes_with import GoesWith
 
 CHECKED = {
     "sensor": "no fault of the arm; check how the force sensor was calibrated and mounted",
@@ -271,6 +272,12 @@ def _largest(answer: Explanation) -> list[str]:
     ]
 
 
+def _in_doubt(place: GoesWith) -> str:
+    if place.foretold is None:
+        return "too few poses are left to bear that out"
+    return "poses left out are foretold no better with it"
+
+
 def _of_a_change(answer: Explanation, pose: str) -> str:
     readings = answer.final.problem.measurements
     if readings.order is None and readings.time is None:
@@ -298,16 +305,14 @@ def _of_the_remainder(answer: Explanation) -> str:
             "The rest comes and goes with the time: read the zero again before every load, and "
             "keep sun, draughts and air conditioning from arm and instrument."
         )
+    most = mostly_accounted(answer)
+    if (shows := place or most) and left.goes_with is not None and not left.goes_with.borne_out:
+        return (
+            f"The rest shows most with {shows}, but {_in_doubt(left.goes_with)}: read at more "
+            "poses and loads that change it, before anything is mended there."
+        )
     if place is not None and (since := changed_at(place)):
         return _of_a_change(answer, since)
-    most = mostly_accounted(answer)
-    foretold = None if left.goes_with is None else left.goes_with.foretold
-    borne_out = foretold is None or foretold.better
-    if (shows := place or most) and not changed_at(shows) and not borne_out:
-        return (
-            f"The rest shows most with {shows}, but poses left out are foretold no better with it: "
-            "read at more poses and loads that change it, before anything is mended there."
-        )
     if place is not None:
         return (
             f"The rest goes with {place}, and beside that only noise is left: look there, and read "

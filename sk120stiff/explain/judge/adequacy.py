@@ -74,11 +74,14 @@ class Adequacy:
 
     @property
     def of_time(self) -> tuple[str, ...]:
-        """That readings of single poses wander, where nothing else is as sure; in a sentence."""
+        """That readings of single poses wander, where nothing else is as sure; in a sentence.
+
+        Where loads grow in the order in which they are put on, the order and the load say the same.
+        """
         name = OWN["drift"]
         p = self.tests.get(name, 1.0)
         others = [each for key, each in self.tests.items() if key not in (name, WHOLE)]
-        if p >= LEVEL / max(len(self.tests), 1) or p > min(others, default=1.0):
+        if p >= LEVEL / max(len(self.tests), 1) or p >= min(others, default=1.0):
             return ()
         return (
             "Readings of single poses wander as the measurement goes on, along no course that the "

@@ -66,11 +66,10 @@ class Account:
     beside: Selection
     left: float = 0.0
 
-    def goes_with(self) -> GoesWith:
-        """What the remainder goes with."""
-        return GoesWith(
-            self.suspect, self.left, _form_of(self.selection.final), bool(self.named.findings)
-        )
+    def goes_with(self, rms: float) -> GoesWith:
+        """What the remainder goes with, and what of its size [m] is left beside that."""
+        share = min(self.left / _form_of(self.selection.final), 1.0) if self.left else 0.0
+        return GoesWith(self.suspect, share * rms, rms, bool(self.named.findings))
 
 
 def _form_of(fit: Fit) -> float:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sk120stiff.errors import micro
+from sk120stiff.explain.localise.changes import changed_at
 
 ALL_OF_IT = "nothing is left beyond the noise"
+BETTER = 0.95  # of the gap without it, that a suspect has to leave of readings no fit saw
 NOT_FORETOLD = "that is where it shows, but how it goes on there is not known"
 
 
@@ -27,8 +29,8 @@ class Foretold:
 
     @property
     def better(self) -> bool:
-        """Nearer with the suspect than without."""
-        return self.gap < self.without
+        """Nearer with the suspect than without, by more than which poses were drawn may bring."""
+        return self.gap < BETTER * self.without
 
     def sentence(self) -> str:
         """Both gaps, and that what does no better is no law."""
@@ -66,6 +68,17 @@ class GoesWith:
         return not self.left
 
     @property
+    def borne_out(self) -> bool:
+        """Readings that no fit saw do not speak against it.
+
+        For a change somewhere among the readings they have to speak: of all the poses from which on
+        something may have changed there is nearly always one that fits a little better.
+        """
+        if self.foretold is None:
+            return changed_at(self.suspect) is None
+        return self.foretold.better
+
+    @property
     def most(self) -> bool:
         """It takes more than half of the square."""
         return self.left**2 < 0.5 * self.without**2
@@ -73,7 +86,7 @@ class GoesWith:
     def sentences(self) -> tuple[str, ...]:
         """Where the remainder lives, and whether other readings bear it out."""
         beside = "with that beside the names" if self.beside_names else "with that in the model"
-        left = f"{micro(self.left)} µm rms per axis are left beyond the noise"
+        left = f"{micro(self.left)} of {micro(self.without)} µm rms per axis are left"
         part = "It" if self.whole else "Most of it" if self.most else "Part of it"
         said = f"{part} goes with {self.suspect}: {beside}, {ALL_OF_IT if self.whole else left}."
         return (said,) if self.foretold is None else (said, self.foretold.sentence())

@@ -60,7 +60,7 @@ def gap_steps(
         labels.append(" ".join(joined) if count else _base_name(found.base))
         joined.clear()
     if holdout is None:
-        held = _on_poses_left_out(found, counts, seed)
+        held = on_poses_left_out(found, counts, seed)
     else:
         held = [_on_file(each, holdout) for each in fits]
     return tuple(
@@ -77,7 +77,7 @@ def foretold_beside(beside: Selection, count: int, without: float, *, seed: int)
         without: Gap on these poses with the names alone, rms per axis [m].
         seed: Of the parts in which poses are left out.
     """
-    (gap,) = _on_poses_left_out(beside, [count], seed)
+    (gap,) = on_poses_left_out(beside, [count], seed)
     return foretold("Poses that are left out are", gap, without)
 
 
@@ -197,7 +197,7 @@ def _on_file(found: Fit, holdout: Measurements) -> float:
     return float(np.sqrt(np.nanmean(gap**2)))
 
 
-def _on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:
+def on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:
     """Gap on poses left out in turn, per axis [m]; NaN where the others do not hold the model."""
     try:
         errors = held_out(found.base.problem.measurements, nested(found, counts), seed=seed)

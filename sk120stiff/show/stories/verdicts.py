@@ -113,7 +113,8 @@ def _outside(answer: Explanation) -> str:
         )
     place = accounted(answer) or mostly_accounted(answer) or ""
     why = "no effect of the catalogue explains it"
-    if since := changed_at(place):
+    borne_out = answer.remainder.goes_with is not None and answer.remainder.goes_with.borne_out
+    if (since := changed_at(place)) and borne_out:
         why = f"it came before pose {since}: the gap goes with {place}"
     elif answer.unnamed:
         why = "no name for it is confirmed by other poses"
