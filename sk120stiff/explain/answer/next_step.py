@@ -199,8 +199,15 @@ def _outside(answer: Explanation) -> list[str]:
 def _of_the_weight(answer: Explanation) -> list[str]:
     """Masses of URDF files are often invented, and gears and bolts are preloaded by them."""
     robot = answer.final.model.robot
-    if not (robot.total_mass and robot.gravity.any()):
+    if not robot.gravity.any():
         return []
+    if not robot.total_mass:
+        return [
+            "The robot file states no masses. An arm's own weight preloads its gears and bolts, and "
+            "what play, friction or a gear that stiffens does cannot be told without it: use a "
+            "URDF that has the masses and their centres, or write gravity: 0 into the YAML file if "
+            "the arm is balanced, and run this again."
+        ]
     return [
         f"What is not in proportion to the load was sought about the preload by the arm's own "
         f"weight, {robot.total_mass:.3g} kg by the URDF: where these masses are not the arm's, "
