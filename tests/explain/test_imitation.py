@@ -11,11 +11,12 @@ from sk120stiff.effects import effect, load_cases_of
 from sk120stiff.errors import Refusal
 from sk120stiff.explain import Options
 from sk120stiff.explain.judge import beside_form, imitation
-from sk120stiff.explain.judge.attribution import CURVE, findings_of
-from sk120stiff.explain.judge.attribution import _length as length
 from sk120stiff.explain.judge.attribution import _objection as objection
+from sk120stiff.explain.judge.attribution import findings_of
 from sk120stiff.explain.judge.beside_form import beside_model_form
 from sk120stiff.explain.judge.imitation import Lineup, imitated, instead_of, spread_over_poses
+from sk120stiff.explain.judge.misspecified import CURVE
+from sk120stiff.explain.judge.misspecified import _length as length
 from sk120stiff.explain.judge.outweighed import outweighed
 from sk120stiff.explain.localise.suspect import Suspect
 from sk120stiff.explain.select.stepwise import refit, select
@@ -238,6 +239,20 @@ def test_a_second_law_of_a_gear_must_show_by_more_than_its_law_is_inexact(spring
     assert objection(found, [second, first], 1, -np.inf) is None
     apart = replace(second, effect=elsewhere)
     assert objection(found, [apart, first], 0, -np.inf) is None
+
+
+def test_what_other_poses_refuted_lends_a_set_no_probability(springs):
+    """A bearing with P = 0.02 stood first in a set that a rival which had fallen made likely."""
+    tilt = effect(springs.robot, "joint_tilt", "joint_2_l")
+    found = select(springs, hidden(JointTilt("joint_2_l", {"first": 4e-7, "second": 2e-7})), NOISE,
+                   [tilt], max_effects=1, alpha=0.01)  # fmt: skip
+    (first,), _ = findings_of(found, seed=0)
+    odds = {tilt.id: 0.02, "force_crosstalk:sensor": 0.95}
+    said = replace(first.evidence, odds=odds)
+    both = replace(first, alternatives=("force_crosstalk:sensor",), evidence=said)
+    assert objection(found, [both], 0, -np.inf) is None
+    fallen = objection(found, [both], 0, -np.inf, {"force_crosstalk:sensor"})
+    assert fallen is not None and "less likely at work than not" in fallen.reason
 
 
 @pytest.mark.parametrize("share", [1.0, 0.05])

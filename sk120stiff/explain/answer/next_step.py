@@ -203,8 +203,8 @@ def _of_the_weight(answer: Explanation) -> list[str]:
         return []
     if not robot.total_mass:
         return [
-            "The robot file states no masses. An arm's own weight preloads its gears and bolts, and "
-            "what play, friction or a gear that stiffens does cannot be told without it: use a "
+            "The robot file states no masses. An arm's own weight preloads its gears and bolts, "
+            "and what play, friction or a gear that stiffens does cannot be told without it: use a "
             "URDF that has the masses and their centres, or write gravity: 0 into the YAML file if "
             "the arm is balanced, and run this again."
         ]

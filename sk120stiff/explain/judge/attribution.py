@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sk120stiff.effects import Effect
-from sk120stiff.effects.base import Elastic, Geometric
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.aliases import aliases_by_design, exact_aliases
 from sk120stiff.explain.candidates.regression import Regression
 from sk120stiff.explain.findings import Evidence, Finding
 from sk120stiff.explain.judge.confirm import UNTRIED, confirm, unconfirmed
+from sk120stiff.explain.judge.misspecified import stronger
 from sk120stiff.explain.judge.posterior import posterior
 from sk120stiff.explain.judge.random_effects import is_constant, joint_that_turns
 from sk120stiff.explain.select.beam import exchanged, in_its_place
-from sk120stiff.explain.select.score import Scored, score_set
-from sk120stiff.explain.select.stepwise import Selection, laws_of, positions, with_effects
-from sk120stiff.robot.anatomy import arm_joints
+from sk120stiff.explain.select.score import Scored, score_set, unit
+from sk120stiff.explain.select.stepwise import Selection, laws_of, with_effects
 
 MARGIN = 6.0  # difference of scores below which two names cannot be told apart
 MISSPECIFICATION = 0.35  # of what is explained that may be left where a law of one gear fell
-CURVE = 0.15  # of a gear's twist to which no law of it is exact: a second law may mend the first
-NEIGHBOURS = 2  # places along the chain: a linkage may hold a passive joint in between
-CHANCE = 2.0  # by which noise lengthens what a law leaves over
 MOST_NAMES = 8  # one answer may list; with more of them it says nothing
 MOST_PLACES = 3  # the same beside model-form error, part of which fits at many places
 EVEN = 0.5  # probability of a name below which it is none, and of chance above which it is that
@@ -43,11 +39,13 @@ class Fallen:
         reason: Why, in a sentence.
         misspecification: It only mends the law of a stronger effect; else other poses do not
             confirm it.
+        refuted: Poses left out, or drawn again, were asked and did not confirm it.
     """
 
     id: str
     reason: str
     misspecification: bool = False
+    refuted: bool = False
 
 
 @dataclass(frozen=True)
@@ -110,7 +108,8 @@ def judged(
         found = _of_better_evidence(found, {each.id for each in fallen})
         if unless_exceeding and found.final.exceeds:
             return found, Named((), tuple(fallen))
-        findings, weakest = findings_of(found, seed=seed, least=least)
+        refuted = {each.id for each in fallen if each.refuted}
+        findings, weakest = findings_of(found, seed=seed, least=least, refuted=refuted)
         if weakest is None:
             return found, Named(findings, tuple(fallen))
         fallen.append(weakest)
@@ -146,9 +145,15 @@ def with_the_strongest(found: Selection, effects: list[Effect]) -> Selection:
 
 
 def findings_of(
-    found: Selection, *, seed: int, least: float = -np.inf
+    found: Selection, *, seed: int, least: float = -np.inf, refuted: Collection[str] = ()
 ) -> tuple[tuple[Finding, ...], Fallen | None]:
     """Judge the chosen effects, each beside all the others, from the weakest up.
+
+    Args:
+        found: The selection.
+        seed: Of folds and resampling.
+        least: Gain of score that an effect has to bring.
+        refuted: Ids of effects that other poses did not confirm: they speak for no set.
 
     Returns:
         findings, weakest: All effects in the order of their weight, and the weakest that may not be
@@ -157,29 +162,34 @@ def findings_of(
     order = by_weight(found.regression, found.scored)
     findings = [_finding(found, effect) for effect in order]
     for place in reversed(range(len(order))):
-        objection = _objection(found, findings, place, least)
+        objection = _objection(found, findings, place, least, refuted)
         if objection is None:
             findings[place] = _confirmed(found, order[place], findings[place], seed)
             said = findings[place].evidence.confirmation
             if said.holds and (found.regression.sigma_known or said.chance < EVEN):
                 continue
-            objection = Fallen(findings[place].effect.id, unconfirmed(findings[place]))
+            said_why = unconfirmed(findings[place])
+            objection = Fallen(findings[place].effect.id, said_why, refuted=True)
         return tuple(findings), objection
     return tuple(findings), None
 
 
 def _objection(
-    found: Selection, findings: list[Finding], place: int, least: float
+    found: Selection,
+    findings: list[Finding],
+    place: int,
+    least: float,
+    refuted: Collection[str] = (),
 ) -> Fallen | None:
     """Why an effect may not be named beside the others, the strongest first; None if it may."""
     finding, before = findings[place], findings[:place]
     name = finding.effect.id
-    stronger = _stronger(found, findings, place)
-    if stronger is not None:
+    mended = stronger(found, findings, place)
+    if mended is not None:
         return Fallen(
             name,
             f"{name} would take away a little more of the gap, but no more than the law of "
-            f"{stronger.effect.id} leaves over; it is not named.",
+            f"{mended.effect.id} leaves over; it is not named.",
             misspecification=True,
         )
     turns = joint_that_turns(found, finding.effect)
@@ -203,7 +213,8 @@ def _objection(
             f"{name} fits, but so do {len(finding.others)} other names; the readings do not tell "
             "what it is, and it is not named.",
         )
-    if finding.probability < EVEN:
+    lent = sum(finding.evidence.odds.get(rival, 0.0) for rival in {*finding.others} & {*refuted})
+    if finding.probability - lent < EVEN:
         return Fallen(
             name,
             f"{name} fits a little better, but by its evidence is less likely at work than not; it "
@@ -241,66 +252,6 @@ def _confirmed(found: Selection, effect: int, finding: Finding, seed: int) -> Fi
         return alone
     wider = asked(replace(finding, alternatives=(*finding.alternatives, *laws)))
     return wider if wider.evidence.confirmation.holds else alone
-
-
-def unit(regression: Regression, model: Scored) -> float:
-    """Noise variance over the one assumed; where nobody stated it, what the model leaves tells."""
-    if regression.sigma_known:
-        return 1.0
-    return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
-
-
-def _stronger(found: Selection, findings: list[Finding], place: int) -> Finding | None:
-    """The stronger effect whose law leaves over what this one explains.
-
-    No gear follows a cubic to the last digit; what is left looks like play or friction there. Which
-    of two laws of one gear is the stronger is told by what the misfit loses without each, not by
-    the micrometres of each: play takes more of these, and hardly any where the curve bends anyway.
-    No link is as thick at its end as at its root; what is left looks like a tilting bearing.
-    """
-    finding = findings[place]
-    gain = np.sqrt(max(finding.evidence.misfit_gain, 0.0))
-    for other in findings:
-        both = finding.effect.of_gear and other.effect.of_gear
-        weaker = finding.evidence.misfit_gain < other.evidence.misfit_gain
-        if both and weaker and finding.effect.where == other.effect.where:
-            without = [each.effect for each in findings if each is not finding]
-            if gain < CURVE * _length(found, other.effect, without):
-                return other
-    for other in findings[:place]:
-        share = other.effect.inexact
-        if (
-            share
-            and _beside(found, finding.effect, other.effect)
-            and gain < share * _length(found, other.effect, [other.effect]) + CHANCE
-        ):
-            return other
-    return None
-
-
-def _beside(found: Selection, effect: Effect, link: Effect) -> bool:
-    """Does this yield in proportion to its load, at the link or at a neighbour of it?
-
-    Or does it move the levers there: where along a beam it yields tells a lever from a taper.
-    """
-    if not isinstance(effect, Elastic | Geometric) or effect.of_gear:
-        return False
-    place: dict[str, int] = {}
-    for number, joint in enumerate(arm_joints(found.final.model.robot)):
-        place |= {joint.name: number, joint.link: number}
-    both = effect.where in place and link.where in place
-    return both and abs(place[effect.where] - place[link.where]) <= NEIGHBOURS
-
-
-def _length(found: Selection, effect: Effect, among: Sequence[Effect]) -> float:
-    """Fall of the misfit that an effect brings among some, as a length √λ in units of the noise."""
-    regression, sums = found.regression, found.regression.sums()
-    chosen = set(positions(regression, among))
-    place = positions(regression, [effect])[0]
-    start = found.scored.by_variant
-    with_it = score_set(regression, sums, chosen, start=start).solved.rss
-    without = score_set(regression, sums, chosen - {place}, start=start).solved.rss
-    return float(np.sqrt(max((without - with_it) / unit(regression, found.scored), 0.0)))
 
 
 def _finding(found: Selection, effect: int) -> Finding:

@@ -22,9 +22,9 @@ import numpy as np
 from sk120stiff.arrays import Array
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.candidates.regression import Regression
-from sk120stiff.explain.judge.attribution import Named, unit
+from sk120stiff.explain.judge.attribution import Named
 from sk120stiff.explain.judge.posterior import LISTED
-from sk120stiff.explain.select.score import Scored, score_set
+from sk120stiff.explain.select.score import Scored, score_set, unit
 from sk120stiff.explain.select.stepwise import Selection, with_effects
 from sk120stiff.identify import Fit, solve
 

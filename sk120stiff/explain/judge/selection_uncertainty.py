@@ -18,12 +18,11 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects import Effect, Elastic, LoadCases
 from sk120stiff.errors import Refusal
 from sk120stiff.explain.findings import Finding
-from sk120stiff.explain.judge.attribution import unit
 from sk120stiff.explain.judge.foreign_cause import moved_by_a_foreign_cause
 from sk120stiff.explain.judge.remainder import remainder_of
 from sk120stiff.explain.select.form import alike_but_for_form
 from sk120stiff.explain.select.own_sizes import price_of_factors, with_settled_sizes
-from sk120stiff.explain.select.score import score_set
+from sk120stiff.explain.select.score import score_set, unit
 from sk120stiff.explain.select.stepwise import Selection, refit
 from sk120stiff.identify import Fit
 from sk120stiff.identify.written import with_values

@@ -189,6 +189,13 @@ class _Left(NamedTuple):
         return np.asarray(own + n * np.log(np.maximum(self.rss, 1e-300) / n) + n)
 
 
+def unit(regression: Regression, model: Scored) -> float:
+    """Noise variance over the one assumed; where nobody stated it, what the model leaves tells."""
+    if regression.sigma_known:
+        return 1.0
+    return max(model.solved.rss / max(regression.rows - len(model.solved.columns), 1), 1e-300)
+
+
 def most_fallen(regression: Regression, sums: Sums, model: Solved, falls: Array) -> Array:
     """By how much -2 ln L of a model falls at most where its misfit falls so much (k,).
 
