@@ -23,6 +23,8 @@ def percent(share: float) -> str:
     value = 100.0 * share
     return f"{value:.0f} %" if abs(value) >= 9.95 else f"{value:.2g} %"
 
+VAGUE = 0.1  # of its error, below which a value has digits of its own
+
 
 def unit_of(written: str) -> str:
     """A unit as print has it: ``N*m**2/rad`` becomes N·m²/rad, and 1 is not written."""
@@ -38,12 +40,14 @@ def with_error(value: float, std: float | None, unit: str = "") -> str:
         return "rigid" if value > 0 else number(value)
     if std is None or not math.isfinite(std) or std <= 0.0:
         return f"{number(value)}{tail}"
-    exponent = math.floor(math.log10(max(abs(value), std)))
+    vague = 0.0 < abs(value) < VAGUE * std  # digits of such an error would hide the value
+    exponent = math.floor(math.log10(abs(value) if vague else max(abs(value), std)))
     if -3 <= exponent <= 4:
         exponent = 0
     scale = 10.0**exponent
-    places = min(max(0, 1 - math.floor(math.log10(std / scale))), 9)
-    text = f"{value / scale:.{places}f} ± {std / scale:.{places}f}".replace("-", "−")
+    places = min(max(0, 1 - math.floor(math.log10((abs(value) if vague else std) / scale))), 9)
+    error = f"{float(f'{std / scale:.2g}'):.0f}" if vague else f"{std / scale:.{places}f}"
+    text = f"{value / scale:.{places}f} ± {error}".replace("-", "−")
     return f"({text})·10{raised(exponent)}{tail}" if exponent else f"{text}{tail}"
 
 

@@ -59,7 +59,7 @@ def page() -> str:
     figure = gap_per_pose(["1", "2"], {"before": [4e-5, 3e-5]})
     return Report(
         f"Title {EVIL}",
-        subtitle="`code` and **strong**",
+        subtitle="`code`, **strong** and **5 N*m/rad, 2 N*m**2 or so**",
         lead="The answer.",
         sections=[
             Section(
@@ -130,6 +130,7 @@ def test_text_stays_text(page: str) -> None:
     assert "&lt;script&gt;alert(1)" in page
     assert "<code>code</code>" in page
     assert "<strong>strong</strong>" in page
+    assert "<strong>5 N*m/rad, 2 N*m**2 or so</strong>" in page
 
 
 def test_numbers_are_written_as_people_write_them(page: str) -> None:

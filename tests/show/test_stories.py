@@ -282,6 +282,8 @@ def test_numbers_are_written_as_people_do() -> None:
     assert with_error(-0.0031, 0.0006) == "−0.00310 ± 0.00060"
     assert with_error(float("inf"), None, "N/m") == "rigid"
     assert with_error(0.0248, 0.001, "1") == "0.0248 ± 0.0010"
+    assert with_error(8.0e5, 4.3e8, "N*m/rad") == "(8.0 ± 4300)·10⁵ N·m/rad"
+    assert with_error(118.74, 19803.0) == "119 ± 20000"
     assert with_error(62604.0, 7756.0) == "62604 ± 7756"
     assert said_as(1.357e6, 1.5e4, "N*m/rad") == "1357 ± 15 kN·m/rad"
     assert said_as(-2.1e-4, 3e-6, "rad") == "−210.0 ± 3.0 µrad"

@@ -27,6 +27,7 @@ from sk120stiff.show.report.blocks import Block, Note, Picture, SceneFrame, Sect
 from sk120stiff.show.wording import raised
 
 WHOLE = 1e4  # up to here a number without digits after the point is easier read than a power
+STRONG = re.compile(r"(?<!\w)\*\*(?=\S)(.+?)(?<=\S)\*\*(?!\w)")  # a unit may hold * and ** too
 _LOG = logging.getLogger(__name__)
 _LIBRARIES = ("sk120stiff", "numpy", "scipy", "pin", "matplotlib", "meshcat")
 
@@ -145,7 +146,7 @@ def _prose(text: str) -> Markup:
         if k % 2:
             parts[k] = f"<code>{part}</code>"
         else:
-            strong = re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", part)
+            strong = STRONG.sub(r"<strong>\1</strong>", part)
             parts[k] = re.sub(r"\b([KC])_(C|X|θ)(?!\w)", r"\1<sub>\2</sub>", strong)
     return Markup("".join(parts))
 
