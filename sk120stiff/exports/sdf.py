@@ -32,14 +32,17 @@ _PLUGIN = {
     "name": "gz::sim::systems::JointPositionController",
 }
 
+NOTHING_ELSE = "ties joints together: SDF has no such spring"
+ITS_TIES = "ties its joints together: SDF has no such spring, those of each joint alone are there"
+
 
 def make(model: Model, request: Request) -> Exported:
     """See `Format.make`."""
     arm = _distinct(moving_arm(model, request, ties=False))
     carried, left_out = told_of(model)
     ties = _ties(model)
-    carried = tuple(told for told in carried if told.effect not in ties)
-    lost = [Told(effect, "ties joints together: SDF has no such spring") for effect in ties]
+    carried = tuple(told for told in carried if ties.get(told.effect) is not NOTHING_ELSE)
+    lost = [Told(effect, what) for effect, what in ties.items()]
     folder = f"{request.out.stem}.meshes"
     files, paths = mesh_files([shape for _, _, shape in arm.shapes], folder)
     notes = [finding.message for finding in visuals(model.robot).findings]
@@ -75,15 +78,16 @@ def _distinct(arm: MovingArm) -> MovingArm:
     return replace(arm, actuated=actuated, bodies=tuple(named(body) for body in arm.bodies))
 
 
-def _ties(model: Model) -> list[str]:
-    """Effects by which the torque of one coordinate moves another."""
+def _ties(model: Model) -> dict[str, str]:
+    """Effects by which the torque of one coordinate moves another, and what is lost of each."""
     load_cases = load_case(model.robot, model.robot.rest, np.zeros(6))
-    found = []
+    found = {}
     for effect, part in zip(model.effects, model.assembly.slices, strict=True):
         if isinstance(effect, LinearElastic) and model.values[part].any():
             C = np.tensordot(model.values[part], effect.patterns(load_cases), axes=1)
-            if (C * (1.0 - np.eye(C.shape[-1]))).any():
-                found.append(effect.id)
+            own = np.eye(C.shape[-1])
+            if (C * (1.0 - own)).any():
+                found[effect.id] = ITS_TIES if (C * own).any() else NOTHING_ELSE
     return found
 
 
