@@ -235,12 +235,21 @@ def _rigid(found: Calibration) -> list[str]:
     if rest:
         stand = "stands on its bound" if len(rest) == 1 else "stand on their bounds"
         said.append(f"{listed(rest)} {stand}: the readings would have it beyond, where nothing is.")
-    ends = zip(found.parameters, found.intervals(), strict=True)
-    if open_ := [
-        p.name for p, (_, high) in ends if np.isinf(high) and p.name not in (*hidden, *soft)
-    ]:
-        reach = "interval of {} reaches" if len(open_) == 1 else "intervals of {} reach"
-        said.append(f"The {reach.format(listed(open_))} up to rigid (inf).")
+    by_noise = np.diag(found.covariance) - np.diag(found.moves.covariance)
+    beyond = found.x > found.reach() * np.sqrt(np.maximum(by_noise, 0.0))
+    ends = zip(found.parameters, found.intervals(), beyond, strict=True)
+    open_ = {
+        p.name: bool(seen)
+        for p, (_, high), seen in ends
+        if np.isinf(high) and p.name not in (*hidden, *soft)
+    }
+    for surely, tail in (
+        (False, "."),
+        (True, ", though noise alone leaves none of that: what the model lacks may do as much."),
+    ):
+        if names := [name for name, seen in open_.items() if seen == surely]:
+            reach = "interval of {} reaches" if len(names) == 1 else "intervals of {} reach"
+            said.append(f"The {reach.format(listed(names))} up to rigid (inf){tail}")
     return said
 
 
