@@ -23,6 +23,7 @@ def percent(share: float) -> str:
     value = 100.0 * share
     return f"{value:.0f} %" if abs(value) >= 9.95 else f"{value:.2g} %"
 
+
 VAGUE = 0.1  # of its error, below which a value has digits of its own
 
 

@@ -46,3 +46,12 @@ def test_where_names_say_it_all_nothing_is_told(tmp_path: Path) -> None:
     answer = explained(tmp_path, a, arm.stands(a)[0], settings=FIT)
     assert answer.whole is None
     assert "calibrated.yaml" not in next_step_of_positions(answer)
+
+
+def test_that_drives_yield_is_no_fault_of_an_arm(tmp_path: Path) -> None:
+    a = poses(24, 0)
+    x = Arm(compliance=1e-6 * np.array([0.5, 1.0, 1.0, 3.0, 3.0, 3.0])).stands(a)[0]
+    answer = explained(tmp_path, a, x, settings=FIT)
+    assert all(item.effect.joint_spring for item in answer.findings)
+    said = next_step_of_positions(answer)
+    assert "drives yield, and that is no fault" in said and "to be mended" not in said

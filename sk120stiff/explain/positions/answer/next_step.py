@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from sk120stiff.explain.judge.borne_out import BorneOut, name_of
 from sk120stiff.explain.positions.answer.balancer import tell_apart
 from sk120stiff.explain.positions.answer.explained import SURE
 from sk120stiff.explain.positions.judge.fallen import EVEN
+from sk120stiff.explain.positions.select.candidates import family
 from sk120stiff.identify.positions.residuals.pure_error import pure_error
 from sk120stiff.identify.positions.words import implausible
 
@@ -86,6 +88,17 @@ LEVEL = (
 )
 
 
+def _what_of_it(names: Collection[str], answer: Explained) -> str:
+    """What to do about causes: drives yield, and that is no fault."""
+    own = [item.effect for item in answer.findings if item.effect.id in names]
+    if own and all(effect.joint_spring for effect in own):
+        return (
+            "drives yield, and that is no fault; 'sk120stiff compensate' makes up for it, and only "
+            "one that is far softer than others of its size is to be looked at"
+        )
+    return "look there first if the arm is to be mended"
+
+
 def next_step_of_positions(answer: Explained) -> str:
     """Plain sentences: what the model may be used for, and what to measure or to mend."""
     first, last = (1e6 * answer.steps[k].heldout_rms for k in (0, -1))
@@ -116,15 +129,13 @@ def next_step_of_positions(answer: Explained) -> str:
     if answer.displaced and most is not None:
         said.append(
             f"Of what was named {most.name} moves the point most, {micro(most.rms, 4)} µm rms per "
-            "axis: look there first if the arm is to be mended."
+            f"axis: {_what_of_it({most.name}, answer)}."
         )
     elif answer.families and not answer.displaced:
         largest = max(answer.families, key=lambda name: answer.families[name])
         share = f"{micro(answer.families[largest], 4)} {unit}"
-        said.append(
-            f"What takes off most is {largest}, {share}: look there first if the arm is to be "
-            "mended."
-        )
+        inside = {i.effect.id for i in answer.findings if family(i.effect) == largest}
+        said.append(f"What takes off most is {largest}, {share}: {_what_of_it(inside, answer)}.")
     said += dict.fromkeys(i.effect.advice for i in answer.findings if i.effect.advice)
     if answer.verdict == "ambiguous":
         if answer.following is not None:
