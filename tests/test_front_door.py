@@ -37,7 +37,7 @@ def public() -> dict[str, object]:
 
 # What the program asks of an effect; whoever writes one finds it in docs/howto/own_effect.md.
 CONTRACT = {f"Effect.{name}" for name in (
-    "applies_to", "at", "nearby_laws", "options_of", "other_laws", "sample",
+    "applies_to", "at", "laws_at_positions", "nearby_laws", "options_of", "other_laws", "sample",
 )}  # fmt: skip
 PUBLIC = {name: item for name, item in public().items() if name not in CONTRACT}
 

@@ -206,6 +206,10 @@ class Effect(ABC):
         """Laws close to this one, once it is in the model; not beside model-form error."""
         return ()
 
+    def laws_at_positions(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """Other laws of it, linear in as many parameters, of which positions choose one."""
+        return ()
+
     @property
     def form(self) -> Form[Effect] | None:
         """Numbers of its law that may lie between those that are tried; None: it has none."""
@@ -357,6 +361,10 @@ class LoadError(Misreading):
 
     of_payload: ClassVar[bool] = False  # masses that are hung on the tool have it, too
     hangs: ClassVar[bool] = False  # a weight: it pulls along gravity however the tool turns
+
+    def laws_at_positions(self, load_cases: LoadCases) -> tuple[Effect, ...]:
+        """Those that it has: in axes of the base, and of the tool."""
+        return self.other_laws(load_cases)
 
 
 class ReadingError(Misreading):

@@ -35,6 +35,7 @@ from sk120stiff.robot import Robot
 FOLDS = 5  # parts in which poses are left out, as is usual
 LIKE = 1.5  # times the errors of frames that were told, to be expected of others
 FAR = 5.0  # times the usual size of a frame's error or a zero's, beyond which it is as was found
+ALIKE = 1.0 - 1e-6  # of the most that a law takes off, from where on the usual one does as well
 COMPLIANCE = "compliance"  # the family of all that yields
 
 
@@ -83,10 +84,10 @@ def linear_at(
         fitted.get(effect.id, referred(effect, references)) for effect in effects
     )
     laws: dict[Effect, tuple[Effect, ...]] = {
-        each: (each, *each.other_laws(problem.load_cases))
-        for each in effects if isinstance(each, LoadError) and each.id not in fitted
+        each: (each, *each.laws_at_positions(problem.load_cases))
+        for each in effects if each.id not in fitted
     }  # fmt: skip
-    apart = [law for each in effects if each.id not in fitted for law in laws.get(each, (each,))]
+    apart = [law for each in effects if each.id not in fitted for law in laws[each]]
     found = slopes(problem, model, apart)
     effects = tuple(
         _likeliest(laws[each], found, seen) if each in laws else each for each in effects
@@ -152,7 +153,8 @@ def _likeliest(laws: Sequence[Effect], found: Mapping[Effect, Array], seen: Cali
         shown = own[:, own.any(axis=0)]
         return float(np.sum((np.linalg.qr(shown)[0].T @ seen.residual) ** 2))
 
-    return max(laws, key=takes_off)
+    taken = {law: takes_off(law) for law in laws}
+    return next(law for law in laws if taken[law] >= ALIKE * max(taken.values()))
 
 
 def usual_sizes(effect: Effect, frames: Mapping[str, float]) -> Array:
