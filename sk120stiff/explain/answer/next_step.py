@@ -282,7 +282,7 @@ def _largest(answer: Explanation) -> list[str]:
 def _in_doubt(place: GoesWith) -> str:
     if place.foretold is None:
         return "too few poses are left to bear that out"
-    return "poses left out are foretold no better with it"
+    return "poses left out are foretold hardly better with it"
 
 
 def _of_a_change(answer: Explanation, pose: str) -> str:

@@ -11,6 +11,7 @@ from sk120stiff.explain.localise.changes import changed_at
 
 ALL_OF_IT = "nothing is left beyond the noise"
 BETTER = 0.95  # of the gap without it, that a suspect has to leave of readings no fit saw
+CHANGED = 0.85  # the same of a change among the readings, which is one of very many
 NOT_FORETOLD = "that is where it shows, but how it goes on there is not known"
 
 
@@ -74,9 +75,10 @@ class GoesWith:
         For a change somewhere among the readings they have to speak: of all the poses from which on
         something may have changed there is nearly always one that fits a little better.
         """
-        if self.foretold is None:
-            return changed_at(self.suspect) is None
-        return self.foretold.better
+        told, change = self.foretold, changed_at(self.suspect) is not None
+        if told is None:
+            return not change
+        return told.gap < CHANGED * told.without if change else told.better
 
     @property
     def most(self) -> bool:
