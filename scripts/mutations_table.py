@@ -321,7 +321,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     *of(
         "identify/solve/beforehand.py", *tests("identify", "draws"),
-        offsets_that_are_no_draws=("size[group] = rms if rms > 0.0 else np.inf", "size[group] = np.inf"),
+        offsets_that_are_no_draws=("size[group] = own if own > 0.0 else np.inf", "size[group] = np.inf"),
         draws_shrunk_where_they_were_read=("CHANCE = 1.0", "CHANCE = 0.01"),
     ),
     *of(

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.data_checks.efforts import efforts_doubt
 from sk120stiff.data_checks.one_marker import of_one_marker
 from sk120stiff.data_checks.passive import Passive
@@ -157,7 +158,7 @@ def _refuse_overstated(
     """A σ above the readings that scatter far less than it: its unit is wrong."""
     if stated is None:
         return
-    size = float(np.sqrt(np.nanmean(measured**2)))
+    size = rms(measured)
     above = stated > size and OVERSTATED * np.sqrt(found.left) < stated
     if above or stated > np.nanmax(np.abs(measured)):
         raise Refusal(

@@ -12,7 +12,7 @@ from itertools import combinations, permutations
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.errors import listed
 from sk120stiff.measurements import Measurements
 
@@ -64,7 +64,7 @@ def _fits(read: Array, told: Array, limit: float) -> bool:
     off = np.abs(read - told)[np.isfinite(read)]
     if not len(off) or off.max() >= limit:
         return False
-    return len(off) < 2 or bool(np.sqrt(np.mean(off**2)) < TOGETHER * limit)
+    return len(off) < 2 or bool(rms(off) < TOGETHER * limit)
 
 
 def _single(read: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.data_checks.one_marker import of_one_marker
 from sk120stiff.data_checks.passive import passive
 from sk120stiff.data_checks.sheet import Sheet, sheet_of
@@ -94,7 +94,7 @@ def turn_slip(robot: Robot, measurements: Measurements) -> TurnSlip | None:
 def _explained(moved: Array, d: Array, turned: Array, turns: Array) -> float:
     """Share of the squares of turns (N, 3) that compliances explain beside displacements."""
     known = np.isfinite(d)
-    sizes = float(np.sqrt(np.mean(d[known] ** 2))), float(np.sqrt(np.mean(turns**2)))
+    sizes = rms(d[known]), rms(turns)
     columns = np.concatenate([moved / sizes[0], turned / sizes[1]])
     both = np.concatenate([d / sizes[0], turns / sizes[1]])
     left = passive(columns, both)

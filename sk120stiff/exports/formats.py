@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.errors import InputError
 from sk120stiff.exports import dh_table, kinematics_params, mjcf, sdf, urdf
 from sk120stiff.exports.contract import Exported, Format, Request
@@ -58,7 +56,7 @@ def format_of(out: Path | None, to: str | None = None) -> Format:
 def exported(model: Model, request: Request, to: Format) -> Exported:
     """An export, with how far its unloaded tool stands off the model for what was left out."""
     made, away = to.make(model, request), departure(model)
-    found = {"departure_rms_m": float(np.sqrt(np.mean(away**2))), "departure_max_m": away.max()}
+    found = {"departure_rms_m": rms(away), "departure_max_m": away.max()}
     if found["departure_rms_m"] < _NOTHING:
         return replace(made, details={**made.details, **found})
     note = (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.errors import MissingPart, short
 from sk120stiff.identify.moves import Moves
 from sk120stiff.identify.solve.beforehand import Beforehand
@@ -134,7 +134,7 @@ class Fit:
     @property
     def rms(self) -> float:
         """Root mean square of the gap over all numbers read [m]; NaN without a length."""
-        return float(np.sqrt(np.nanmean(self.gap**2))) if self.gap.size else float("nan")
+        return rms(self.gap)
 
     @property
     def size(self) -> str:

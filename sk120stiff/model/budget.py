@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.effects import Elastic
 from sk120stiff.model.model import Model
 
@@ -107,10 +107,10 @@ def with_own_errors(sums: Sequence[Share], within: Sequence[Share]) -> tuple[Sha
 
 def _share(name: str, moved: Array, columns: Array, covariance: Array | None) -> Share:
     """Size of what some parameters bring (N, 3): columns (N, 3, p), covariance (p, p)."""
-    rms = float(np.sqrt(np.mean(moved**2)))
-    if rms < ROUNDING:
+    size = rms(moved)
+    if size < ROUNDING:
         return Share(name, 0.0, 0.0)
     if covariance is None or not np.isfinite(covariance).all():
-        return Share(name, rms, None)
-    slope = np.einsum("ni,nip->p", moved, columns) / (moved.size * rms)
-    return Share(name, rms, float(np.sqrt(max(slope @ covariance @ slope, 0.0))))
+        return Share(name, size, None)
+    slope = np.einsum("ni,nip->p", moved, columns) / (moved.size * size)
+    return Share(name, size, float(np.sqrt(max(slope @ covariance @ slope, 0.0))))

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, rms
 from sk120stiff.effects import Effect, Mounting, Viewpoint
 from sk120stiff.effects.geometry import ToolOffset
 from sk120stiff.effects.marker_shift import MarkerShift
@@ -77,7 +77,7 @@ class PositionsPool:
     def standard(self) -> float:
         """Standard uncertainty of one number, rms over lengths where there are any [m or rad]."""
         own = self.problem.sigma_of_channels[self.problem.counted]
-        return float(np.sqrt(np.mean(own**2)))
+        return rms(own)
 
     def numbers(self, count: int) -> int:
         """How many are read at so many candidates, those of readings taken already among them."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, rms
 from sk120stiff.effects import load_case
 from sk120stiff.errors import Refusal
 from sk120stiff.model import (
@@ -65,7 +65,7 @@ class StandingUncertainty:
 def _rms(std: Array) -> float:
     """Infinite if one of them is unknown."""
     there = std[~np.isnan(std)]
-    return float(np.sqrt(np.mean(there**2))) if len(there) else float("nan")
+    return rms(there)
 
 
 def standing_uncertainty(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.data_checks import place_of, slips_of_rows
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Options, load_cases_of
 from sk120stiff.errors import ToolkitError
@@ -163,7 +163,7 @@ class Explanation:
         problem = self.final.problem
         used = as_seen(self.final.model.robot, self.readings).masked()
         gap = replace(problem, measurements=used, weights=None).gap(self.final.x)
-        return float(np.sqrt(np.nanmean(gap**2)))
+        return rms(gap)
 
     def effect(self, name: str) -> Effect:
         """The effect ``name:where`` of the catalogue, as it was considered.

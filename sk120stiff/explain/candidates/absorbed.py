@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.effects import Effect
 from sk120stiff.identify import Fit
 from sk120stiff.identify.checks.left_over import orthonormal
@@ -70,8 +71,8 @@ def absorbed(fit: Fit, effects: Sequence[Effect]) -> tuple[Absorbed, ...]:
         out.append(
             Absorbed(
                 effect=effect,
-                shows=float(np.sqrt(np.mean(signature[problem.read] ** 2))),
-                remains=float(np.sqrt(np.mean(left[problem.read] ** 2))),
+                shows=rms(signature[problem.read]),
+                remains=rms(left[problem.read]),
                 visible=float(np.linalg.norm(beyond)) / noise,
             )
         )

@@ -20,7 +20,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import stats
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.explain.localise.localisation import (
     MOSTLY_NOISE,
     DirectionShare,
@@ -228,15 +228,15 @@ def _postures(look: Look, poses: Sequence[PoseShare]) -> tuple[PostureTrend, ...
     for k, joint in enumerate(load_cases.robot.actuated):
         variables[f"the position of {joint}"] = load_cases.a[first, k]
     variables = {name: v for name, v in variables.items() if np.ptp(v) > 1e-6}
-    rms = np.array([pose.rms for pose in poses])
-    if not np.ptp(rms):
+    left = np.array([pose.rms for pose in poses])
+    if not np.ptp(left):
         return ()
-    tests = [stats.spearmanr(values, rms) for values in variables.values()]
+    tests = [stats.spearmanr(values, left) for values in variables.values()]
     corrected = holm([float(test.pvalue) for test in tests])
     found = []
     for (name, values), test, p in zip(variables.items(), tests, corrected, strict=True):
         upper = values > np.median(values)
-        low, high = (float(np.sqrt(np.mean(rms[part] ** 2))) for part in (~upper, upper))
+        low, high = (rms(left[part]) for part in (~upper, upper))
         found.append(PostureTrend(name, float(test.statistic), p, low, high))
     return tuple(sorted(found, key=lambda trend: trend.probability))
 

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.identify import Fit
 from sk120stiff.measurements.poses import rows_by_label
 
@@ -53,7 +53,7 @@ class RandomEffects:
     def _blocks(self) -> list[tuple[Index, Array, Array]]:
         if not self.columns.any():
             return []
-        size = float(np.sqrt(np.mean(self.fit.model.values[self.columns] ** 2)))
+        size = rms(self.fit.model.values[self.columns])
         spread = self.fit.problem.whitener.apply(size * self.derivative[:, :, self.columns])
         blocks = []
         for rows in rows_by_label(self.fit.problem.pose):

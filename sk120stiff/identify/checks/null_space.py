@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.effects.base import SPRINGS
 from sk120stiff.errors import listed, short, two_digits
 from sk120stiff.identify.checks.unseen import why_unseen
@@ -179,7 +179,7 @@ def _by_chance(fit: Fit) -> Iterator[tuple[set[int], str]]:
 def _drawn_size(fit: Fit, group: Index) -> str:
     """Draws in words, with their root mean square."""
     parameter = fit.parameters[group[0]]
-    size = float(np.sqrt(np.mean((fit.x * fit.problem.scale)[group] ** 2)))
+    size = rms((fit.x * fit.problem.scale)[group])
     unit = parameter.spec.internal_unit
     told = f"{short(1e6 * size)} µm" if unit == "m" else f"{size:.3g} {unit}"
     return f"{parameter.effect.name.replace('_', ' ')} ({told} rms)"

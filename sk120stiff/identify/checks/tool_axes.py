@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.errors import short
 from sk120stiff.identify.checks.left_over import orthonormal
 from sk120stiff.identify.fit import Fit
@@ -42,7 +43,7 @@ def axes_of_joint_angles(fit: Fit) -> str | None:
     return (
         "The forces look turned into axes of the tool by the joint angles alone. Those of a sensor "
         f"turn with the tool as the arm bends, here by up to {1e3 * angle:.2g} mrad, and that "
-        f"moves the readings by {short(1e6 * np.sqrt(np.mean(otherwise**2)))} µm rms per axis, "
+        f"moves the readings by {short(1e6 * rms(otherwise))} µm rms per axis, "
         "which springs and names have to make up for. Turn the forces back by the same joint "
         "angles, and write 'force: {frame: base}'."
     )

@@ -44,7 +44,7 @@ def refuse_another_robot(found: Fit, readings: Measurements) -> None:
     """
     problem = of_poses(found)
     gap = problem.of_channels.undo(found.residual)
-    left = float(np.sqrt(np.mean(gap[problem.lengths] ** 2))) if len(problem.lengths) else 0.0
+    left = rms(gap[problem.lengths]) if len(problem.lengths) else 0.0
     reach = arm_length(found.model.robot)
     if left <= LARGEST * reach:
         return

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.effects import Elastic, Viewpoint
 from sk120stiff.errors import listed, micro
 from sk120stiff.identify.positions.calibrate import Calibration
@@ -53,7 +53,7 @@ def known_calibration(found: Calibration) -> Model:
 def noise_of(found: Calibration) -> float:
     """What readings of one pose differ by beyond the model, rms [m or rad]."""
     own = found.problem.of_channels.sigma[found.problem.counted]
-    return float(np.sqrt(np.mean(own**2))) * found.unit
+    return rms(own) * found.unit
 
 
 def gap_sentence(found: Calibration) -> str:
@@ -63,7 +63,7 @@ def gap_sentence(found: Calibration) -> str:
     sizes = [
         *([f"{micro(found.rms)} {problem.rms_unit}"] if len(problem.lengths) else []),
         *([f"{micro(distances.mean())} µm mean distance"] if len(distances) else []),
-        *([f"{micro(np.sqrt(np.mean(angles**2)))} µrad rms of angles"] if len(angles) else []),
+        *([f"{micro(rms(angles))} µrad rms of angles"] if len(angles) else []),
     ]
     said = (
         f"Gap {', '.join(sizes)}, over {len(problem.rows)} numbers of "

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Mask, rms
 from sk120stiff.identify.solve.prior import Prior
 from sk120stiff.identify.solve.problem import Problem
 
@@ -51,8 +51,8 @@ class Beforehand:
         """
         span, size = problem.span, np.full(len(x), np.inf)
         for group in problem.draws:
-            rms = float(np.sqrt(np.mean(x[group] ** 2)))
-            size[group] = rms if rms > 0.0 else np.inf
+            own = rms(x[group])
+            size[group] = own if own > 0.0 else np.inf
         draws = Prior.of(jacobian, held, span, size, unit, CHANCE)
         read = np.vstack([jacobian, draws.rows()])
         return cls(draws, Prior.of(read, held, span, problem.usual, unit, COUNTS))

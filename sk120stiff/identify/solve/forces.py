@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.effects import load_cases_of
 from sk120stiff.measurements import Measurements
 from sk120stiff.model import Model
@@ -38,9 +39,5 @@ def with_by_force(model: Model, measurements: Measurements) -> Measurements:
 
 def moved_alike(one: Measurements, other: Measurements) -> bool:
     """Do forces move the point about as much, on average, by both?"""
-    sizes = [
-        float(np.sqrt(np.mean(each.by_force**2)))
-        for each in (one, other)
-        if each.by_force is not None
-    ]
+    sizes = [rms(each.by_force) for each in (one, other) if each.by_force is not None]
     return len(sizes) < 2 or abs(sizes[0] - sizes[1]) <= ALIKE * sizes[1]

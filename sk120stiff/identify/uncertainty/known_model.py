@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.errors import short
 from sk120stiff.identify.checks.yardstick import Yardstick, yardstick
 from sk120stiff.identify.fit import Fit
@@ -126,7 +126,7 @@ def _remainder(fit: Fit, left: LeftOver) -> Remainder | None:
     """What the fit leaves over, as predictions need it; None where no load tells its size."""
     problem = fit.problem
     length = arm_length(problem.model.robot) or 1.0
-    load = float(np.sqrt(np.mean(load_size(problem.load_cases.wrench, length) ** 2)))
+    load = rms(load_size(problem.load_cases.wrench, length))
     if load == 0.0 or not np.isfinite(left.upper):
         return None
     return Remainder(

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.measurements.channels import Channels
 from sk120stiff.measurements.noise_statement import Instrument
 
@@ -63,6 +63,6 @@ def anywhere(channels: Channels) -> Channels:
     """
     if channels.rays is None or channels.sigma_of_rows is None:
         return channels
-    size = float(np.sqrt(np.mean(channels.sigma_of_rows**2)))
+    size = rms(channels.sigma_of_rows)
     sigma = {**channels.sigma, "position": size}
     return replace(channels, rays=None, sigma_of_rows=None, sigma=sigma)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing.laying import kabsch
@@ -81,13 +81,13 @@ class _Bar:
             seen = (self.fixed - shift) @ turn  # where the stated points are, base axes
             left = self._left(seen, marker)
             again = np.abs(left) <= max(FAR * float(np.median(np.abs(left))), LEAST)
-            rms = float(np.sqrt(np.mean(left[kept] ** 2)))
+            size = rms(left[kept])
             if (again == kept).all() or again.mean() < 1.0 - WILD:
                 break
             kept = again
-        off = float(np.sqrt(np.mean(self._left(self.fixed, marker)[kept] ** 2)))
+        off = rms(self._left(self.fixed, marker)[kept])
         spread = float(self.flange.std(axis=0).max())
-        return Ranged(shift, turn, marker, self.fixed, rms, left, kept, off, spread)
+        return Ranged(shift, turn, marker, self.fixed, size, left, kept, off, spread)
 
     def _trilaterated(self, kept: Mask) -> tuple[Array, Array]:
         at = self.flange + np.einsum("kij,kj->ki", self.axes, self.point)

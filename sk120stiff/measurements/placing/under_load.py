@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sk120stiff.arrays import Index
+from sk120stiff.arrays import Index, rms
 from sk120stiff.errors import InputError, short
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.placing.cloud import WILD, Cloud
@@ -37,7 +37,7 @@ def refuse_far_under_load(
         f"{int(far.sum())} of {len(rows)} rows lie up to {short(float(left.max()))} m from where "
         "the robot has the marker, placed by those under the least load of their pose"
     )
-    least = EXPLAINED * float(np.sqrt(np.mean(left**2)))
+    least = EXPLAINED * rms(left)
     refuse_from_a_row_on(cloud, told, least, readings, rows)
     raise InputError(
         f"{told}, the first in line {readings.line[rows[np.flatnonzero(far)[0]]]}; no load bends "

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.explain import Explanation
 from sk120stiff.explain.candidates.absorbed import Absorbed
 from sk120stiff.identify import Fit, fit
@@ -81,7 +81,7 @@ class Demo:
         """Gap of a model on the readings, rms per axis [m]."""
         problem = self.found.problem
         gap = problem.measured - model.predict(problem.load_cases)
-        return float(np.sqrt(np.nanmean(gap**2)))
+        return rms(gap)
 
     @property
     def noise(self) -> float | None:
@@ -112,4 +112,4 @@ def one_gain(model: Model, fitted: Fit) -> tuple[float, float]:
         return float(np.sum(problem.whitener.apply(gap(gain)) ** 2))
 
     gain = float(minimize_scalar(misfit, bounds=REACH, method="bounded").x)
-    return gain, float(np.sqrt(np.nanmean(gap(gain) ** 2)))
+    return gain, rms(gap(gain))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.effects import comment_lines
 from sk120stiff.errors import listed
 from sk120stiff.explain import DOUBTFUL, Explanation, Finding
@@ -118,9 +119,9 @@ def many_values(parameters: Sequence[Parameter]) -> str:
     """Parameters of one kind that are too many for a table, told by their size."""
     values = np.array([p.value for p in parameters])
     largest = parameters[int(np.argmax(np.abs(values)))]
-    rms = said_as(float(np.sqrt(np.mean(values**2))), None, largest.spec.unit)
+    size = said_as(rms(values), None, largest.spec.unit)
     return (
-        f"It has {len(values)} values; their rms is {rms}, the "
+        f"It has {len(values)} values; their rms is {size}, the "
         f"largest is {largest.spec.name} with "
         f"{said_as(largest.value, largest.std, largest.spec.unit)}. All stand in "
         "the model file."

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.cli.frame import Answer
 from sk120stiff.cli.identify_rows import parameter_rows
 from sk120stiff.cli.opening import provenance
@@ -38,7 +39,7 @@ def calibration_answer(
         "robot": found.model.robot.name,
         "parameters": parameter_rows(found, unseen=reasons),
         "rms_um": found.rms * 1e6 if len(found.problem.lengths) else None,
-        "rms_urad": float(np.sqrt(np.mean(angles**2)) * 1e6) if len(angles) else None,
+        "rms_urad": rms(angles) * 1e6 if len(angles) else None,
         "mean_distance_um": _mean(found),
         "placed_rms_um": None if found.placed is None else found.placed.rms * 1e6,
         "sigma_um": None if stated is None else stated * 1e6,

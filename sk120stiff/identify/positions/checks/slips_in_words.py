@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, rms
 from sk120stiff.errors import listed, two_digits
 from sk120stiff.identify.positions.checks.likeliest import Cause, Suspect
 from sk120stiff.identify.positions.solve.pose_problem import PoseProblem
@@ -129,7 +129,7 @@ def _distance(problem: PoseProblem, moved: Array) -> float:
     """By how much positions differ, rms [m]; NaN where none is whole."""
     away = problem.distances(moved)
     away = away[np.isfinite(away)]
-    return float(np.sqrt(np.mean(away**2))) if len(away) else np.nan
+    return rms(away)
 
 
 def _instead(problem: PoseProblem, when: Index, rival: Suspect) -> str:

@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array
+from sk120stiff.arrays import Array, rms
 from sk120stiff.effects import Catalogue, Effect, Mounting, Viewpoint
 from sk120stiff.effects.geometry import JointOffset, LinkLength, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
@@ -111,4 +111,4 @@ def compliances(model: Model) -> dict[str, float]:
     for p in model.parameters:
         if p.free and p.effect.joint_spring:
             told.setdefault(p.spec.unit, []).append(p.internal)
-    return {unit: float(np.sqrt(np.mean(np.square(sizes)))) for unit, sizes in told.items()}
+    return {unit: rms(np.asarray(sizes)) for unit, sizes in told.items()}

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from sk120stiff.arrays import rms
 from sk120stiff.errors import micro
 from sk120stiff.identify.positions.calibrate import Calibration
 from sk120stiff.identify.positions.noise.model_form import ModelForm
@@ -81,7 +82,7 @@ def left_beyond_noise(final: Calibration) -> Size | None:
     else:
         return None
     gap = final.problem.of_channels.undo(final.residual)[final.problem.counted]
-    whole = float(np.sqrt(np.mean(gap**2)))
+    whole = rms(gap)
     best, low, high = size
     return min(best, whole), min(low, whole), high
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index, Mask
+from sk120stiff.arrays import Array, Index, Mask, rms
 from sk120stiff.effects.geometry import JointOffset, ToolOffset
 from sk120stiff.effects.joint_frame import JointFrame
 from sk120stiff.effects.marker_shift import MarkerShift
@@ -137,7 +137,7 @@ class PoseProblem(Problem):
         beside, offsets = self._with_offsets
         seen = read_poses(beside, cases, beside.values, derivative=True)
         each = np.sqrt((seen.columns[:, :, offsets] ** 2).sum(axis=2))  # (N, 6)
-        shift, turn = (float(np.sqrt(np.mean(part**2))) for part in (each[:, :3], each[:, 3:]))
+        shift, turn = (rms(part) for part in (each[:, :3], each[:, 3:]))
         R, origin = instrument_frames(beside, cases)
         to_base = np.swapaxes(R, 1, 2)
         marker = np.einsum("nij,nj->ni", to_base, seen.position - origin)
@@ -209,7 +209,7 @@ class PoseProblem(Problem):
                 j = robot.actuated.index(parameter.effect.where)
                 out[:, j] = slope[:, k] * parameter.internal
                 twists[:, j] = torques[:, j] * parameter.internal
-        usual = float(np.sqrt(np.mean(twists**2)))
+        usual = rms(twists)
         return out / usual if usual > 0.0 else out
 
     @cached_property
@@ -229,7 +229,7 @@ class PoseProblem(Problem):
     def stated_sigma(self) -> float | None:
         """Stated uncertainty of what `counted` tells [m or rad], rms; None where none is."""
         own = self.sigma_of_channels[self.counted][self.known[self.counted]]
-        return float(np.sqrt(np.mean(own**2))) if len(own) else None
+        return rms(own) if len(own) else None
 
     @property
     def whitener(self) -> PoseWhitening:  # type: ignore[override]
