@@ -16,6 +16,7 @@ from sk120stiff.arrays import Integers, Mask
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import read_apart
 from sk120stiff.measurements.noise.whitening import Whitener
+from sk120stiff.measurements.poses import rows_by_label
 from sk120stiff.measurements.table.branches import branches_of
 
 Zero = Literal["shared", "separate"]
@@ -149,8 +150,7 @@ def _left(
     y, x = np.zeros((len(own), 3)), np.zeros(means.shape)
     y[m.read], x[m.read] = whitener.apply(m.moved), whitener.apply(means.astype(np.float64))
     squares, freedom, price = 0.0, 0, whitener.logdet
-    order = np.argsort(place, kind="stable")
-    for rows in np.split(order, np.flatnonzero(np.diff(place[order])) + 1):
+    for rows in rows_by_label(place):
         for axes in _alike(m.read[rows]):
             seen = rows[m.read[rows, axes[0]]]
             q, r = np.linalg.qr(x[seen, axes[0]][:, np.unique(member[seen])])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sk120stiff.arrays import Array, Integers, Mask
+from sk120stiff.measurements.poses import rows_by_label
 
 SAME = 0.03  # share of the largest load within which a load is met again
 ONE_WAY = 0.999  # cosine of the angle between two loads of one direction, at least
@@ -30,8 +31,9 @@ def branches_by_order(
     falling = np.zeros(len(pose), dtype=bool)
     told, able = 0, 0
     loaded = np.flatnonzero(size > 0.0)
-    loaded = loaded[np.lexsort((sequence[loaded], pose[loaded]))]
-    for rows in np.split(loaded, np.flatnonzero(np.diff(pose[loaded])) + 1):
+    loaded = loaded[np.argsort(sequence[loaded], kind="stable")]
+    for own in rows_by_label(pose[loaded]):
+        rows = loaded[own]
         if len(rows) < 3:
             continue
         able += 1

@@ -20,6 +20,7 @@ from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.positions.noise.sizes import of_poses
 from sk120stiff.identify.positions.omitted.nuisances import COUNTED
 from sk120stiff.identify.positions.omitted.other_causes import causes_at, slopes
+from sk120stiff.measurements.poses import rows_by_label
 
 CLEAR = 6.0  # by which the BIC must fall
 MOST = 12  # causes that are looked at beside one another
@@ -175,9 +176,8 @@ class Blocks:
         """(M,) the gap at every pose of a fit to all others."""
         U = np.column_stack([self.base, self._columns(chosen)])
         gap = self.residual - U @ (U.T @ self.residual)
-        order = np.argsort(self.pose, kind="stable")
         out = np.empty_like(gap)
-        for rows in np.split(order, np.flatnonzero(np.diff(self.pose[order])) + 1):
+        for rows in rows_by_label(self.pose):
             own = np.eye(len(rows)) - U[rows] @ U[rows].T
             out[rows] = np.linalg.lstsq(own, gap[rows], rcond=SMALL)[0]
         return out

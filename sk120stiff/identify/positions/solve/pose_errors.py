@@ -27,6 +27,7 @@ from scipy import stats
 from scipy.optimize import minimize_scalar
 
 from sk120stiff.arrays import Array, Index, Mask, lengths_of
+from sk120stiff.measurements.poses import rows_by_label
 
 RANGE = (-16.0, -4.0)  # ln of rad or m; as joints that stand off by 0.1 µrad to 20 mrad
 CLEAR = 10.83  # fall of -2 ln L, which noise alone brings in one case of 2000
@@ -106,8 +107,7 @@ class Common(NamedTuple):
 
 def directions(white: Array, pose: Index) -> Iterator[tuple[Index, Array, Array]]:
     """Of each pose its numbers (m,), the ways in which it moves them (m, k), and how far (k,)."""
-    order = np.argsort(pose, kind="stable")
-    for rows in np.split(order, np.flatnonzero(np.diff(pose[order])) + 1):
+    for rows in rows_by_label(pose):
         U, size, _ = np.linalg.svd(white[rows], full_matrices=False)
         kept = size > 1e-12 * max(float(size.max(initial=0.0)), 1e-300)
         yield rows, U[:, kept], size[kept]
