@@ -12,8 +12,9 @@ from functools import cached_property
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index, Mask, rms
+from sk120stiff.arrays import Array, Mask, rms
 from sk120stiff.identify import Fit
+from sk120stiff.measurements.noise.whitening import Shortening
 from sk120stiff.measurements.poses import rows_by_label
 
 
@@ -41,24 +42,14 @@ class RandomEffects:
 
     def whiten(self, x: Array) -> Array:
         """As `Whitener.apply`, with the scatter of the draws besides."""
-        white = self.fit.problem.whitener.apply(x)
-        for rows, directions, shrink in self._blocks:
-            along = directions.T @ white[rows]
-            white[rows] -= directions @ (shrink[:, None] * along.reshape(len(shrink), -1)).reshape(
-                along.shape
-            )
-        return white
+        return self._scatter.apply(self.fit.problem.whitener.apply(x))
 
     @cached_property
-    def _blocks(self) -> list[tuple[Index, Array, Array]]:
+    def _scatter(self) -> Shortening:
         if not self.columns.any():
-            return []
+            return Shortening([], [])
         size = rms(self.fit.model.values[self.columns])
         spread = self.fit.problem.whitener.apply(size * self.derivative[:, :, self.columns])
-        blocks = []
-        for rows in rows_by_label(self.fit.problem.pose):
-            part = spread[rows]
-            part = part[:, np.abs(part).max(axis=0) > 0.0]
-            U, singular, _ = np.linalg.svd(part, full_matrices=False)
-            blocks.append((rows, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
-        return blocks
+        poses = rows_by_label(self.fit.problem.pose)
+        parts = [spread[rows] for rows in poses]
+        return Shortening(poses, [part[:, (part != 0.0).any(axis=0)] for part in parts])

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from sk120stiff.arrays import Array, Index, Integers
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
-from sk120stiff.measurements.noise.whitening import as_columns
+from sk120stiff.measurements.noise.whitening import Shortening, as_columns
 from sk120stiff.measurements.poses import rows_by_label
 
 
@@ -71,25 +71,15 @@ class ForceWhitener:
         white = self._whitened(errors)
         pivots = np.diagonal(factor, axis1=1, axis2=2)[read]
         logdet = 2.0 * float(np.log(pivots).sum())
-        self._alike: list[tuple[Index, Array, Array]] = []
-        """Of groups with as many numbers: these (m, r), directions (m, r, 3) of their shared error,
-        and by how much what lies along each is shortened (m, 3)."""
-        numbers = rows_by_label(np.asarray(group)[self.reading])
-        for places in rows_by_label(np.array([len(each) for each in numbers])):
-            same = np.stack([numbers[k] for k in places])
-            U, size, _ = np.linalg.svd(white[same], full_matrices=False)
-            logdet += float(np.log1p(size**2).sum())
-            self._alike.append((same, U, 1.0 - 1.0 / np.sqrt(1.0 + size**2)))
-        self.logdet = logdet
+        groups = rows_by_label(np.asarray(group)[self.reading])
+        self._shared = Shortening(groups, [white[own] for own in groups])
+        self.logdet = logdet + self._shared.logdet
         """Natural logarithm of det V, over all numbers that were read; V in m²."""
 
     def apply(self, x: ArrayLike) -> Array:
         """As `Whitener.apply`."""
         values = as_columns(x, self.n_readings)
-        white = self._whitened(values.reshape(self.n_readings, 3, -1))
-        for rows, U, shorter in self._alike:
-            along = np.swapaxes(U, 1, 2) @ white[rows]
-            white[rows] -= U @ (shorter[:, :, None] * along)
+        white = self._shared.apply(self._whitened(values.reshape(self.n_readings, 3, -1)))
         return white.reshape(len(white), *values.shape[2:])
 
     def _whitened(self, columns: Array) -> Array:

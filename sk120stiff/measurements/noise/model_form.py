@@ -22,7 +22,7 @@ from sk120stiff.arrays import Array, Index, Mask
 from sk120stiff.errors import InputError
 from sk120stiff.measurements.data import Measurements
 from sk120stiff.measurements.directions import turns_onto
-from sk120stiff.measurements.noise.whitening import Whitens
+from sk120stiff.measurements.noise.whitening import Shortening, Whitens
 from sk120stiff.measurements.poses import rows_by_label
 
 
@@ -131,25 +131,15 @@ class FormWhitener:
         columns = [form.proportional * proportional, form.constant * constant]
         own = np.sqrt(form.factors(measurements))[:, None, None]
         white = noise.apply(own * np.concatenate(columns, axis=2))
-        self._alike: list[tuple[Index, Array, Array]] = []
-        """Of poses with as many rows: these (m, r), directions (m, r, k) of their random effects,
-        and by how much what lies along each is shortened (m, k)."""
         rows = rows_of_poses(measurements)
-        directions: list[tuple[Array, Array]] = [(white[:0], white[:0])] * len(rows)
-        logdet = noise.logdet
-        for places in rows_by_label(np.array([len(each) for each in rows])):
-            same = np.stack([rows[k] for k in places])
-            U, singular, _ = np.linalg.svd(white[same], full_matrices=False)
-            self._alike.append((same, U, 1.0 - 1.0 / np.sqrt(1.0 + singular**2)))
-            logdet += float(np.log1p(singular**2).sum())
-            for k, own, size in zip(places, U, singular, strict=True):
-                directions[k] = own, size
+        self._of_poses = Shortening(rows, [white[each] for each in rows])
+        directions = self._of_poses.directions
         self.strengths = [(r, U, s**2) for r, (U, s) in zip(rows, directions, strict=True)]
         """For each pose its whitened rows (r,), the directions (r, k) of its random effects, and
         their variance (k,) over the noise's."""
         self._outweighing = [(r, U[:, s > 1.0]) for r, (U, s) in zip(rows, directions, strict=True)]
         noise_left = [1.0 / (1.0 + s[s > 1.0] ** 2) for _, s in directions]
-        self.logdet = logdet
+        self.logdet = noise.logdet + self._of_poses.logdet
         """Natural logarithm of det V, over all numbers that were read; V in m²."""
         shares = np.concatenate([*noise_left, np.zeros(0)])
         self.noise_share = float(shares.mean()) if len(shares) else 1.0
@@ -171,16 +161,9 @@ class FormWhitener:
 
     def apply(self, x: ArrayLike) -> Array:
         """As `Whitener.apply`."""
-        white = self._noise.apply(x)
-        flat = white.reshape(len(white), -1)
-        for rows, U, shrink in self._alike:
-            along = np.swapaxes(U, 1, 2) @ flat[rows]
-            flat[rows] -= U @ (shrink[:, :, None] * along)
-        return flat.reshape(white.shape)
+        return self._of_poses.apply(self._noise.apply(x))
 
 
 def rows_of_poses(measurements: Measurements) -> list[Index]:
     """Of each pose its rows among the R whitened numbers; a zero reading belongs to one pose."""
-    pose = measurements.pose_index[measurements.row_of_number]
-    order = np.argsort(pose, kind="stable")
-    return np.split(order, np.flatnonzero(np.diff(pose[order])) + 1)
+    return rows_by_label(measurements.pose_index[measurements.row_of_number])

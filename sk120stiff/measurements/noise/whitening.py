@@ -11,6 +11,7 @@ An axis that was not read has an infinite variance d: it adds nothing to t and s
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -120,3 +121,39 @@ def _sum_before(x: Array) -> Array:
     sums = np.zeros_like(x)
     np.cumsum(x[:, :-1], axis=1, out=sums[:, 1:])
     return sums
+
+
+class Shortening:
+    """(I + Z Zᵀ)^(-1/2) for columns Z that each group of numbers has of its own.
+
+    Z = U S Vᵀ leaves what is across U as it is and shortens what lies along it, by 1/√(1 + s²).
+
+    Args:
+        groups: Of each group its numbers (r,); none is in two.
+        columns: Of each group its columns (r, k), whitened.
+    """
+
+    def __init__(self, groups: Sequence[Index], columns: Sequence[Array]) -> None:
+        self.directions: list[tuple[Array, Array]] = [(Z, Z) for Z in columns]
+        """Of each group the directions U (r, k) and the sizes s (k,)."""
+        self.logdet = 0.0
+        """Natural logarithm of det(I + Z Zᵀ)."""
+        self._alike: list[tuple[Index, Array, Array]] = []
+        """Of groups of one shape: their numbers (m, r), U (m, r, k) and what is lost (m, k)."""
+        shapes: dict[tuple[int, ...], list[int]] = {}
+        for k, Z in enumerate(columns):
+            shapes.setdefault(Z.shape, []).append(k)
+        for _, places in sorted(shapes.items()):
+            U, s, _ = np.linalg.svd(np.stack([columns[k] for k in places]), full_matrices=False)
+            numbers = np.stack([groups[k] for k in places])
+            self._alike.append((numbers, U, 1.0 - 1.0 / np.sqrt(1.0 + s**2)))
+            self.logdet += float(np.log1p(s**2).sum())
+            for k, own, size in zip(places, U, s, strict=True):
+                self.directions[k] = own, size
+
+    def apply(self, white: Array) -> Array:
+        """(R, ...) shortened, in place where memory allows."""
+        flat = white.reshape(len(white), -1)
+        for numbers, U, lost in self._alike:
+            flat[numbers] -= U @ (lost[:, :, None] * (np.swapaxes(U, 1, 2) @ flat[numbers]))
+        return flat.reshape(white.shape)
