@@ -87,6 +87,12 @@ def with_assumed(model: Model, used: Measurements, assumed: Sequence[str]) -> Mo
     return model
 
 
+def soft_joints(model: Model) -> set[str]:
+    """Joints with a spring in the model: only there can gears change their stiffness."""
+    springs = np.isfinite(model.joint_stiffness())
+    return {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
+
+
 def candidates_for(model: Model, used: Measurements, options: Options) -> tuple[Effect, ...]:
     """Effects of the catalogue that the readings could show and the user does not exclude.
 
@@ -100,9 +106,7 @@ def candidates_for(model: Model, used: Measurements, options: Options) -> tuple[
     present = {effect.id for effect in model.effects}
     everything = _everything(model, used)
     refuse_unknown(everything, options, model)
-    springs = np.isfinite(model.joint_stiffness())
-    soft = {joint for joint, yields in zip(model.robot.actuated, springs, strict=True) if yields}
-
+    soft = soft_joints(model)
     excluded = {e.id for e in everything if any(_matches(e, w) for w in options.exclude)}
     general = {effect.id for effect in everything} - excluded
 

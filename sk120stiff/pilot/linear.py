@@ -14,6 +14,7 @@ import numpy as np
 
 from sk120stiff.arrays import Array, Index
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, LoadCases, all_effects
+from sk120stiff.explain.options import soft_joints
 from sk120stiff.model import Model
 
 FAINT = 0.5  # of the noise: an effect whose usual size shows less at every reading is not weighed
@@ -57,19 +58,15 @@ class LinearMap:
             catalogue: What may be missing.
         """
         present = {effect.id for effect in model.effects}
-        soft = np.isfinite(model.joint_stiffness())
-        soft_joints = {
-            joint for joint, yields in zip(model.robot.actuated, soft, strict=True) if yields
-        }
+        soft = soft_joints(model)
         everything = all_effects(model.robot, poses=(), timed=False, catalogue=catalogue)
         fit_for = [
             effect
             for effect in everything
             if effect.id not in present
             and not effect.random_effects
-            and not effect.only_absolute
             and effect.applies_to(load_cases)
-            and (not effect.bends_a_spring or effect.where in soft_joints)
+            and (not effect.bends_a_spring or effect.where in soft)
         ]
         full = model
         for effect in fit_for:
