@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -9,7 +10,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from sk120stiff.arrays import largest, rms
+from sk120stiff.arrays import Array, largest, rms
 from sk120stiff.cli.cell import CellOption, assumed_at_work, at_work, opened_cell
 from sk120stiff.cli.commands.compensate.files import (
     budget_keys,
@@ -27,6 +28,7 @@ from sk120stiff.cli.commands.compensate.path import (
     CHORD,
     STEP,
     LoadAxes,
+    OpenedPath,
     PathOptions,
     open_path,
     with_joints,
@@ -52,16 +54,18 @@ from sk120stiff.cli.tables import progress_bar
 from sk120stiff.cli.uncertainty import uncertainty_keys
 from sk120stiff.errors import InputError
 from sk120stiff.files import will_write
-from sk120stiff.model import joint_spring_model
+from sk120stiff.model import Model, joint_spring_model
 from sk120stiff.plan import feasible
-from sk120stiff.programs import language_of
+from sk120stiff.programs import Language, language_of
 from sk120stiff.programs.building import convention
 from sk120stiff.programs.controller import frame_words
 from sk120stiff.programs.placing import TOOL_DOWN
+from sk120stiff.robot import Robot
 from sk120stiff.units import parse_size
 from sk120stiff.workspace import (
     Compensation,
     Judged,
+    LoadedPath,
     branch_of,
     compensate,
     elastic_arm,
@@ -155,22 +159,8 @@ def command(
     """
     will_write(out)
     check_sheet(sheet)
-    language = language_of(out, to)
     chosen = settings_of(settings or [])
-    if language is not None:
-        language.with_defaults(chosen)
-        if by_joints and not language.joint_moves:
-            raise InputError(
-                f"{language.title} has no moves by joint values",
-                where="--by-joints",
-                remedy="Leave the option out, or name another language in --out or --to.",
-            )
-    elif chosen or by_joints:
-        raise InputError(
-            "a CSV file needs no settings of a language",
-            where="--set" if chosen else "--by-joints",
-            remedy="Name a robot program in --out, or its language in --to.",
-        )
+    language = _language_for(language_of(out, to), chosen, by_joints=by_joints)
     speed = {
         "feed": parse_size(feed, "m/s", where="--feed", like=FEED),
         "rapid": parse_size(rapid, "m/s", where="--rapid", like=RAPID),
@@ -200,24 +190,17 @@ def command(
                 progress=report,
             ),
         )
-    given, part, facts, _ = opened
+    given, part = opened.path, opened.part
     if load_axes == LoadAxes.tool:
         given = given.turned_to_base(robot, nominal, at)
-    if given.joints is not None and given.position is not None:
-        facts = (*facts, "Its joints are driven; the positions beside them agree.")
-    facts = (*facts, *(point_words(believed) if at == robot.tool_frame else ()))
-    if language is not None and not robot.controller.axes:
-        facts = (*facts, f"In the program {convention(robot)}.")
-    if language is not None:
-        stated = not language.in_part_frame(language.with_defaults(chosen))
-        facts = (*facts, *frame_words(robot, part, stated=stated))
+    facts = [*opened.facts, *_facts(believed, opened, at, language, chosen)]
     assumed = assumed_at_work(robot, around)
     held_at = given.wrench if at == robot.tool_frame else None
     wrong = infeasible(robot, around, nominal, given, held_at)
     branch = branch_of(robot, nominal, ground)
     warn_of_branch(branch, given)
     with progress_bar("Compensating") as report:
-        found = compensate(
+        own = compensate(
             believed,
             nominal,
             given.wrench,
@@ -226,16 +209,19 @@ def command(
             movable=movable,
             progress=report,
         )
-    after, judge = found.after, believed
-    own = found
+    found, judge = own, believed
     if against is not None:
-        truth = judge = model_for(robot, against)
-        after = standing(truth, found.a, nominal, given.wrench, frame=at)
-        before = standing(truth, nominal, nominal, given.wrench, frame=at)
-        found = Compensation(found.a, before, after, found.reasons)
+        judge = model_for(robot, against)
+        found = replace(
+            own,
+            before=standing(judge, nominal, nominal, given.wrench, frame=at),
+            after=standing(judge, own.a, nominal, given.wrench, frame=at),
+        )
     uncertainty = standing_uncertainty(judge, found.a, given.wrench, frame=at)
     said = branch_words(branch, robot)
-    judged = Judged(given, judge, nominal, at, part, found.before, after, uncertainty, measured)
+    judged = Judged(
+        given, judge, nominal, at, part, found.before, found.after, uncertainty, measured
+    )
     came_back = measured_keys(judged)
     about = standing_words(judge, uncertainty)
     used = None
@@ -251,21 +237,7 @@ def command(
         told = [*origin(str(against or model), judge, path)[1:], *facts, said]
         write_sheet(judged, sheet, str(against or model), path, told, about)
     document = {
-        "robot": robot.name,
-        "rows": given.count,
-        "before_um": rms(found.before.distance) * 1e6,
-        "after_um": rms(after.distance) * 1e6,
-        "before_max_um": largest(found.before.distance) * 1e6,
-        "after_max_um": largest(after.distance) * 1e6,
-        "before_max_urad": largest(np.linalg.norm(found.before.turned, axis=1)) * 1e6,
-        "after_max_urad": largest(np.linalg.norm(after.turned, axis=1)) * 1e6,
-        "largest_correction": np.abs(found.a - nominal).max(axis=0, initial=0.0),
-        "joints": robot.actuated,
-        "remaining": [
-            {"line": given.table.lines[k], "reason": reason, "after_um": after.distance[k] * 1e6}
-            for k, reason in enumerate(found.reasons)
-            if reason
-        ],
+        **_corrected(robot, given, nominal, found),
         "branch": branch_keys(branch, given, robot),
         "cell": around.source or None,
         "infeasible": wrong,
@@ -285,3 +257,68 @@ def command(
         *measured_words(came_back), *facts, *assumed,
     ]  # fmt: skip
     return Answer(document, parts=shown, exit_code=0 if held else 1)
+
+
+def _language_for(
+    language: Language | None, chosen: Mapping[str, str], *, by_joints: bool
+) -> Language | None:
+    """The language, once it is sure that it takes these settings and moves; None: a CSV file."""
+    if language is not None:
+        language.with_defaults(chosen)
+        if by_joints and not language.joint_moves:
+            raise InputError(
+                f"{language.title} has no moves by joint values",
+                where="--by-joints",
+                remedy="Leave the option out, or name another language in --out or --to.",
+            )
+    elif chosen or by_joints:
+        raise InputError(
+            "a CSV file needs no settings of a language",
+            where="--set" if chosen else "--by-joints",
+            remedy="Name a robot program in --out, or its language in --to.",
+        )
+    return language
+
+
+def _facts(
+    model: Model,
+    opened: OpenedPath,
+    at: str,
+    language: Language | None,
+    chosen: Mapping[str, str],
+) -> Iterator[str]:
+    """What is said of the path with its joints and of the program, in sentences."""
+    robot, path = model.robot, opened.path
+    if path.joints is not None and path.position is not None:
+        yield "Its joints are driven; the positions beside them agree."
+    if at == robot.tool_frame:
+        yield from point_words(model)
+    if language is not None:
+        if not robot.controller.axes:
+            yield f"In the program {convention(robot)}."
+        stated = not language.in_part_frame(language.with_defaults(chosen))
+        yield from frame_words(robot, opened.part, stated=stated)
+
+
+def _corrected(
+    robot: Robot, path: LoadedPath, nominal: Array, found: Compensation
+) -> dict[str, object]:
+    """The keys of errors before and after, and of what remains."""
+    before, after = found.before, found.after
+    return {
+        "robot": robot.name,
+        "rows": path.count,
+        "before_um": rms(before.distance) * 1e6,
+        "after_um": rms(after.distance) * 1e6,
+        "before_max_um": largest(before.distance) * 1e6,
+        "after_max_um": largest(after.distance) * 1e6,
+        "before_max_urad": largest(np.linalg.norm(before.turned, axis=1)) * 1e6,
+        "after_max_urad": largest(np.linalg.norm(after.turned, axis=1)) * 1e6,
+        "largest_correction": np.abs(found.a - nominal).max(axis=0, initial=0.0),
+        "joints": robot.actuated,
+        "remaining": [
+            {"line": path.table.lines[k], "reason": reason, "after_um": after.distance[k] * 1e6}
+            for k, reason in enumerate(found.reasons)
+            if reason
+        ],
+    }
