@@ -28,9 +28,11 @@ from sk120stiff.errors import InputError
 from sk120stiff.files import will_write, write_atomically
 from sk120stiff.measurements import Measurements, write_measurements
 from sk120stiff.model import Model
-from sk120stiff.plan import Cell, Plan, as_measured, lowest_points, plan, plan_positions
+from sk120stiff.plan import Cell, Plan, Route, as_measured, lowest_points, plan, plan_positions
+from sk120stiff.programs import Language
 from sk120stiff.programs.controller import checked_text, frame_words
 from sk120stiff.programs.driving import language_by_joints, route_program
+from sk120stiff.robot import Robot
 from sk120stiff.units import parse_size, parse_values
 from sk120stiff.workspace import places_of
 
@@ -123,17 +125,7 @@ def command(
         return checked(
             check, model or _file(robot), point, cell, lambda found: _stated(found, lowest, box)
         )
-    if robot is None and model is None:
-        raise InputError(
-            "nothing says for which arm to plan",
-            remedy="Write plan model.yaml --count 12; --check plan.csv checks one there is.",
-        )
-    if count is None and places is None:
-        raise InputError(
-            "nothing says how many poses to plan", remedy="Write --count 12, or --places CSV."
-        )
-    if axis is not None and places is None:
-        raise InputError("this says how the tool stands at --places", where="--tool-axis")
+    _refuse_half_a_question(model or _file(robot), count, places, axis)
     declare_readings(out)
     will_write(program, "--program")
     will_show(page)
@@ -180,28 +172,8 @@ def command(
         document, said = told(made)
     way: dict[str, object] | None = None
     if language is not None and program is not None and made.way is not None:
-        driven = route_program(language, program.stem, start.robot, made.way, made.poses)
-        write_atomically(program, checked_text(language, driven, start.robot, made.way.a))
-        said.extend(frame_words(start.robot))
-        way = {
-            "order": made.poses,
-            "via_points": int((made.way.pose < 0).sum()),
-            "driving_s": made.way.seconds,
-            "minutes": made.way.minutes(made.n_readings),
-            "left_out": made.left_out,
-        }
-        said.append(
-            f"Driven in this order: {made.way.seconds:.0f} s of way with {way['via_points']} via "
-            f"points; about {way['minutes']:.0f} min with the readings. Written to {program}."
-        )
-        if made.left_out:
-            said.append(
-                "Poses to which no free way was found, others taken instead where there are any: "
-                f"{made.left_out}."
-            )
-        if count is not None and (fewer := count - len(made.poses)) > 0:
-            poses = "1 pose" if fewer == 1 else f"{fewer} poses"
-            said.append(f"{poses} fewer than was asked for: ways to others are not free either.")
+        way, driving = _driven(made, made.way, start.robot, program, language, count)
+        said += driving
     floor = made.cell.floor
     heights = lowest_points(start.robot, made.joints, at, made.cell)
     remarks = [*made.remarks]
@@ -236,6 +208,52 @@ def command(
         write_measurements(made, out)
         said.append(f"Written to {out} and {out.with_suffix('.yaml')}.")
     return Answer(document, said)
+
+
+def _refuse_half_a_question(
+    arm: Path | None, count: int | None, places: Path | None, axis: str | None
+) -> None:
+    if arm is None:
+        raise InputError(
+            "nothing says for which arm to plan",
+            remedy="Write plan model.yaml --count 12; --check plan.csv checks one there is.",
+        )
+    if count is None and places is None:
+        raise InputError(
+            "nothing says how many poses to plan", remedy="Write --count 12, or --places CSV."
+        )
+    if axis is not None and places is None:
+        raise InputError("this says how the tool stands at --places", where="--tool-axis")
+
+
+def _driven(
+    made: Plan, way: Route, robot: Robot, program: Path, language: Language, count: int | None
+) -> tuple[dict[str, object], list[str]]:
+    """Write the program of the way; its keys and what is said of it."""
+    driven = route_program(language, program.stem, robot, way, made.poses)
+    write_atomically(program, checked_text(language, driven, robot, way.a))
+    via, minutes = int((way.pose < 0).sum()), way.minutes(made.n_readings)
+    said = [
+        *frame_words(robot),
+        f"Driven in this order: {way.seconds:.0f} s of way with {via} via points; about "
+        f"{minutes:.0f} min with the readings. Written to {program}.",
+    ]
+    if made.left_out:
+        said.append(
+            "Poses to which no free way was found, others taken instead where there are any: "
+            f"{made.left_out}."
+        )
+    if count is not None and (fewer := count - len(made.poses)) > 0:
+        poses = "1 pose" if fewer == 1 else f"{fewer} poses"
+        said.append(f"{poses} fewer than was asked for: ways to others are not free either.")
+    keys = {
+        "order": made.poses,
+        "via_points": via,
+        "driving_s": way.seconds,
+        "minutes": minutes,
+        "left_out": made.left_out,
+    }
+    return keys, said
 
 
 def _opened(
