@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sk120stiff.arrays import rms
 from sk120stiff.effects import Effect, load_cases_of
 from sk120stiff.errors import InputError, Refusal
 from sk120stiff.explain.candidates.linearised import Linearised
@@ -194,7 +195,7 @@ def _on_file(found: Fit, holdout: Measurements) -> float:
     """Gap on a hold-out file, per axis [m]."""
     other = Problem(found.model, holdout.masked(), found.problem.noise)
     gap = other.measured - found.model.predict(other.load_cases.of_another_file)
-    return float(np.sqrt(np.nanmean(gap**2)))
+    return rms(gap)
 
 
 def on_poses_left_out(found: Selection, counts: Sequence[int], seed: int) -> list[float]:

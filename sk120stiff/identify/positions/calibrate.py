@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Mask
+from sk120stiff.arrays import Array, Mask, rms
 from sk120stiff.effects import CATALOGUE, Catalogue, Effect, Elastic, references_of
 from sk120stiff.errors import InputError, short
 from sk120stiff.identify.fit import Fit
@@ -105,7 +105,7 @@ class Calibration(Fit):
     def size(self) -> str:
         """See `Fit.size`: of lengths, or of angles where nothing else was read."""
         gap = self.problem.of_channels.undo(self.residual)[self.problem.counted]
-        return f"{short(1e6 * np.sqrt(np.mean(gap**2)))} {self.problem.unit} rms"
+        return f"{short(1e6 * rms(gap))} {self.problem.unit} rms"
 
     @property
     def per_axis(self) -> str:
@@ -283,7 +283,7 @@ def _problem(
     noise = NoiseModel(START["position"], zero="separate", freedom=np.inf if stated else 0)
     problem = PoseProblem(model, used, noise, sigma=sigma, common=common, turning=turning)
     own = problem.sigma_of_channels[problem.counted]  # rows may state their own
-    return replace(problem, noise=replace(noise, sigma=float(np.sqrt(np.mean(own**2)))))
+    return replace(problem, noise=replace(noise, sigma=rms(own)))
 
 
 def rigid_columns(problem: PoseProblem, start: Model) -> Array:

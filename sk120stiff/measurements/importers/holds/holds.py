@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sk120stiff.arrays import Array, Index
+from sk120stiff.arrays import Array, Index, rms
 from sk120stiff.measurements.importers.columns.pose_labels import near_poses
 from sk120stiff.measurements.importers.contract import Column, Sheet
 from sk120stiff.measurements.importers.drafting import Draft
@@ -49,7 +49,7 @@ class Holds:
     def say(self) -> str:
         """The noise of the loads in words; empty where they are read without any."""
         parts = [
-            f"{np.sqrt(np.mean(part**2)):.2g} {unit}"
+            f"{rms(part):.2g} {unit}"
             for part, unit in ((self.noise[:3], "N"), (self.noise[3:], "N·m"))
             if part.any()
         ]
