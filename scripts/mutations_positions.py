@@ -186,7 +186,7 @@ OF_POSITIONS: tuple[Fault, ...] = (
     ),
     *of(
         "explain/positions/select/candidates.py", *tests("positions", "moved"),
-        loads_misread_by_sensors_alone=("    return max(laws, key=takes_off)", "    return laws[0]"),
+        loads_misread_by_sensors_alone=("    return next(law for law in laws if taken[law] >= ALIKE * max(taken.values()))", "    return laws[0]"),
     ),
     *of(
         "measurements/placing/laying.py", *tests("measurements/placing", "registration"),
