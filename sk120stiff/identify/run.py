@@ -10,6 +10,7 @@ from sk120stiff.effects import Elastic
 from sk120stiff.errors import InputError, listed
 from sk120stiff.identify.estimate import fit_displacements
 from sk120stiff.identify.fit import Fit
+from sk120stiff.identify.noise.growing import growing
 from sk120stiff.identify.positions.calibrate import Calibration, calibrate, with_model_form
 from sk120stiff.identify.positions.checks.beside_frames import without_springs
 from sk120stiff.identify.positions.checks.computed import computed
@@ -96,7 +97,9 @@ def fit(
     parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
     start = replace(model, parameters=tuple(parameters)) if kept else model
     alone = fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
-    return alone if robust or noise is not None else beside_errors_of_poses(alone)
+    if robust or noise is not None or growing(alone) is not None:  # that is of single readings
+        return alone
+    return beside_errors_of_poses(alone)
 
 
 def _fit_positions(
