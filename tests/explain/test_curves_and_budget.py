@@ -163,7 +163,9 @@ def test_where_nothing_is_confirmed_the_masses_of_the_urdf_are_put_in_doubt(skew
     for gravity, told in ((None, weighs), (np.zeros(3), False)):
         final = replace(skewed.final, model=model.under(gravity))
         said = next_step(replace(skewed, verdict="outside", final=final))
-        assert ("write gravity: 0 into the YAML file" in said) == told
+        assert ("write gravity: 0 into the YAML file" in said) == (gravity is None)
+        assert ("about the preload by the arm's own weight" in said) == told
+        assert ("The robot file states no masses" in said) == (gravity is None and not weighs)
 
 
 def test_priors_are_prices(springs):

@@ -117,7 +117,9 @@ def test_nobody_is_sent_to_mend_what_other_poses_do_not_show() -> None:
     )
     assert f"The rest goes with {PLACE}" in next_step(Answered(goes_with=better))
     said = next_step(Answered(goes_with=worse))
-    assert f"The rest shows most with {PLACE}, but poses left out are foretold no better" in said
+    assert (
+        f"The rest shows most with {PLACE}, but poses left out are foretold hardly better" in said
+    )
     assert "look there" not in said
 
 
