@@ -19,9 +19,10 @@ import yaml
 
 from sk120stiff.effects import load_cases_of
 from sk120stiff.errors import ToolkitWarning
-from sk120stiff.identify import fit, known_model
-from sk120stiff.measurements import read_measurements
+from sk120stiff.identify import Fit, fit, known_model
+from sk120stiff.measurements import Measurements, read_measurements
 from sk120stiff.model import (
+    Model,
     joint_spring_model,
     predict_with_uncertainty,
     read_model,
@@ -101,6 +102,7 @@ def _compliances(rng: Rng, keys: Sequence[str], stiffness: float) -> dict[str, f
     return {key: 1.0 / _around(rng, stiffness) for key in keys}
 
 
+Fitted = Callable[[Model, Measurements], Fit]
 FAINTER = 6.0  # times: seldom seen in the readings, and yet as large as what they tell
 SK120 = (1e6, 1e6, 1e6, np.inf, np.inf, np.inf)
 UR5 = (2e4,) * 6
@@ -148,13 +150,15 @@ class Campaign:
         return np.abs(self.miss) <= self.reach * std / narrower
 
 
-def campaigns(kind: Kind, count: int, seed: int, folder: Path) -> Iterator[Campaign]:
+def campaigns(
+    kind: Kind, count: int, seed: int, folder: Path, fitted: Fitted = fit
+) -> Iterator[Campaign]:
     """Draw, fit, write, read, predict; noise is stated."""
     for number in range(count):
-        yield _campaign(kind, (seed, number), folder)
+        yield _campaign(kind, (seed, number), folder, fitted)
 
 
-def _campaign(kind: Kind, key: tuple[int, int], folder: Path) -> Campaign:
+def _campaign(kind: Kind, key: tuple[int, int], folder: Path, fitted: Fitted) -> Campaign:
     for attempt in range(20):
         rng = np.random.default_rng((*key, attempt))
         at = setting("L0", (*key, attempt), rng, arm=kind.arm(), positions=False)
@@ -166,7 +170,7 @@ def _campaign(kind: Kind, key: tuple[int, int], folder: Path) -> Campaign:
             asked = _written(case, case.sealed, folder / "sealed.csv")
         except NoEquilibrium:
             continue
-        return _predicted(kind, data, asked, truth, folder / "model.yaml")
+        return _predicted(kind, data, asked, truth, folder / "model.yaml", fitted)
     raise RuntimeError(f"no campaign for {kind.label}, {key}")
 
 
@@ -182,14 +186,16 @@ def _written(case: Case, rows: Rows, path: Path) -> Path:
     return path
 
 
-def _predicted(kind: Kind, data: Path, asked: Path, truth: Array, file: Path) -> Campaign:
+def _predicted(
+    kind: Kind, data: Path, asked: Path, truth: Array, file: Path, fitted: Fitted
+) -> Campaign:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ToolkitWarning)
         settings = yaml.safe_load(data.with_suffix(".yaml").read_text(encoding="utf-8"))
         frames = {"base": settings["base_frame"], "tool": settings["tool_frame"]}
         robot = load_robot(settings["robot"], **frames)
         readings = read_measurements(data, robot.actuated)
-        found = fit(joint_spring_model(robot, kind.springs), readings)
+        found = fitted(joint_spring_model(robot, kind.springs), readings)
         write_model(known_model(found), file)
         model = read_model(file)
         load_cases = load_cases_of(robot, read_measurements(asked, robot.actuated))
