@@ -164,7 +164,9 @@ def explain_displacements(
     tell("confirming on other poses", 0.3)
     found, named, account = judged_names(found, base, under, seed=options.seed)
     found, named = without_rigid_gears(found, named)
-    found, named = with_soft_parts(found, named, soft_rivals(found), seed=options.seed)
+    rivals, judged = soft_rivals(found), found
+    found, named = with_soft_parts(found, named, rivals, seed=options.seed)
+    rivals = rivals if found is judged else soft_rivals(found)
     found = replace(found, final=with_settled_sizes(found.final))
     base = of_readings(found.base.problem.measurements, base)
     left = adequacy_of(found, noise)
@@ -197,7 +199,7 @@ def explain_displacements(
         remainder = replace(remainder, shows=(*remainder.shows, *left.of_time))
     turned = axes_of_joint_angles(base)
     beyond = implausible(found) if remainder.significant else None
-    softer = softer_instead(soft_rivals(found)) if beyond is None else {}
+    softer = softer_instead(rivals) if beyond is None else {}
     near = (*named.doubted, *([] if beyond is None else [beyond.id]))
     suspects, guess = contenders(found, near if verdict == "outside" else (), seed=options.seed)
     written = beside_parts(

@@ -97,9 +97,11 @@ def fit(
     parameters = (replace(p, free=p.free and p.name not in kept) for p in model.parameters)
     start = replace(model, parameters=tuple(parameters)) if kept else model
     alone = fit_displacements(start, measurements, noise=noise, method=method, robust=robust)
-    if robust or noise is not None or growing(alone) is not None:  # that is of single readings
+    if robust or noise is not None:
         return alone
-    return beside_errors_of_poses(alone)
+    beside = beside_errors_of_poses(alone)
+    told = beside is not alone and growing(alone) is not None  # that is of single readings
+    return alone if told else beside
 
 
 def _fit_positions(

@@ -14,7 +14,7 @@ from sk120stiff.errors import Refusal, short
 from sk120stiff.identify.fit import Fit
 from sk120stiff.identify.solve.problem import Problem
 from sk120stiff.identify.solving import solve_near
-from sk120stiff.identify.uncertainty.variance_components import variance_components
+from sk120stiff.identify.uncertainty.variance_components import Components, variance_components
 from sk120stiff.measurements import NoiseModel
 from sk120stiff.measurements.noise.model_form import ModelForm
 
@@ -27,8 +27,10 @@ def with_model_form(fit: Fit) -> NoiseModel:
 
     Where a larger noise would do as well, nothing is structured, and only the size is let free.
     """
-    noise = fit.problem.noise
-    found = variance_components(fit)
+    return _noise_beside(fit.problem.noise, variance_components(fit))
+
+
+def _noise_beside(noise: NoiseModel, found: Components) -> NoiseModel:
     if noise.known and found.inflation_gain > found.gain - WORTH:
         return replace(noise, form=ModelForm(), freedom=0)
     if not noise.known:
@@ -45,10 +47,9 @@ def beside_errors_of_poses(found: Fit) -> Fit:
     readings = problem.measurements
     if len(readings.poses) == readings.n_readings or problem.noise.form or found.unit == 0.0:
         return found
-    if variance_components(found).probability > BY_CHANCE:
-        return found
-    noise = with_model_form(found)
-    if not noise.form:
+    components = variance_components(found)
+    noise = _noise_beside(problem.noise, components)
+    if components.probability > BY_CHANCE or not noise.form:
         return found
     try:
         beside = solve_near(Problem(problem.model, readings, noise, problem.weights), found.x)
