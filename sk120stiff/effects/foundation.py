@@ -13,6 +13,7 @@ from sk120stiff.arrays import Array
 from sk120stiff.effects.askew import COUPLINGS, CROSS, cross_term, patterns_of_two, softest_way
 from sk120stiff.effects.base import AxisByAxis, Effect
 from sk120stiff.effects.form import Form
+from sk120stiff.effects.lengths_in_names import MM, from_name, in_name
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
@@ -24,9 +25,7 @@ from sk120stiff.robot.rotations import homogeneous
 BELOW = "_below_"
 PEDESTALS = (0.4, 0.8, 1.6)  # m: heights of what arms stand on, where it is not told
 LOWEST, REACH = 0.02, 2.5  # m: within which such a height is sought
-MINUS = "minus_"
-_MM = rf"((?:{MINUS})?\d+)"
-POINT = re.compile(f"{_MM}(?:_x_{_MM}_y_{_MM})?")  # what stands behind _below_
+POINT = re.compile(f"{MM}(?:_x_{MM}_y_{MM})?")  # what stands behind _below_
 FINER = (0.75, 0.87, 1.15, 1.3)  # times such a height
 
 
@@ -84,10 +83,7 @@ class BaseRocking(StraightPart):
             return found
         found = replace(found, askew=any(name.startswith(CROSS) for name in options.shape))
         for point in filter(None, told):
-            below, x, y = (
-                None if each is None else float(each.replace(MINUS, "-")) / 1e3
-                for each in point.groups()
-            )
+            below, x, y = (None if each is None else from_name(each) for each in point.groups())
             beside = None if x is None or y is None else (x, y)
             found = replace(found, below=below or 0.0, beside=beside)
         return found
@@ -166,10 +162,8 @@ class BaseRocking(StraightPart):
     @property
     def _end(self) -> str:
         if self.beside is None:
-            return f"{BELOW}{1e3 * self.below:.0f}" if self.below else ""
-        below, x, y = (
-            f"{1e3 * value:.0f}".replace("-", MINUS) for value in (self.below, *self.beside)
-        )
+            return f"{BELOW}{in_name(self.below)}" if self.below else ""
+        below, x, y = map(in_name, (self.below, *self.beside))
         return f"{BELOW}{below}_x_{x}_y_{y}"
 
     @property

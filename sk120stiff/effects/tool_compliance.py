@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from sk120stiff.effects.base import Effect
+from sk120stiff.effects.lengths_in_names import MM, from_name, in_name
 from sk120stiff.effects.load_cases import LoadCases
 from sk120stiff.effects.nonlinear import ALSO, Nonlinear, StraightPart
 from sk120stiff.effects.options import Options
@@ -17,9 +18,8 @@ from sk120stiff.errors import InputError
 from sk120stiff.robot import Robot, VirtualJoint
 from sk120stiff.robot.rotations import homogeneous
 
-ABOUT, MINUS = "_about_", "minus_"
-_MM = rf"((?:{MINUS})?\d+)"
-POINT = re.compile(f"{_MM}_{_MM}_{_MM}")  # what stands behind _about_
+ABOUT = "_about_"
+POINT = re.compile(f"{MM}_{MM}_{MM}")  # what stands behind _about_
 ON_THE_WAY = (0.25, 0.5, 0.75)  # of the way to the point: half for a beam that is bent at its end
 NEAR = 0.05  # m: a point nearer to the tool frame has no bracket between
 
@@ -66,7 +66,7 @@ class ToolCompliance(StraightPart):
                 remedy="Write the same whole numbers of millimetres behind _about_ in all names, "
                 "as 0_minus_20_225.",
             )
-        x, y, z = (float(each.replace(MINUS, "-")) / 1e3 for each in told.groups())
+        x, y, z = map(from_name, told.groups())
         return replace(found, about=(x, y, z))
 
     def laws_at_positions(self, load_cases: LoadCases) -> tuple[Effect, ...]:
@@ -83,8 +83,7 @@ class ToolCompliance(StraightPart):
     def _end(self) -> str:
         if self.about is None:
             return ""
-        numbers = (f"{1e3 * value:.0f}".replace("-", MINUS) for value in self.about)
-        return f"{ABOUT}{'_'.join(numbers)}"
+        return f"{ABOUT}{'_'.join(map(in_name, self.about))}"
 
     @property
     def parameters(self) -> tuple[ParameterSpec, ...]:
